@@ -13,8 +13,8 @@ from base_cases import CASES
 from floors import consistency, markdown_value, misses, report, squared_errors
 from replay import reckon, replay, run_port, textbook
 import simulated
-from rbx1_nav.base.description import Limits
 from rbx1_nav.base.kinematics import ORIGIN
+from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.inputs import Imu, Odom
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR

@@ -10,8 +10,8 @@ import numpy
 
 from floors import consistency
 import simulated
-from rbx1_nav.base.description import Limits
 from rbx1_nav.base.kinematics import Odometry, Pose
+from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
 from rbx1_nav.filter.inputs import Imu, Odom

@@ -14,8 +14,8 @@ sys.path.insert(0, os.path.join(FOLDER, '..', 'test', 'unit', 'extras', 'fitting
 import numpy
 
 from sample_runs import EXERCISE, FLOOR, REST, record
-from rbx1_nav.base.description import load_robot
 from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.base.surfaces import KEYS, load_surface
 from rbx1_nav.extras.fitting.comparison import mahalanobis
 from rbx1_nav.extras.fitting.prediction import SPREADS

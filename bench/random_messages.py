@@ -9,8 +9,8 @@ import numpy
 
 from floors import UNKNOWN
 import simulated
+from rbx1_nav.base.covariances import MIN_VARIANCE
 from rbx1_nav.base.kinematics import Pose, arc
-from rbx1_nav.base.readings import MIN_VARIANCE
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
 from rbx1_nav.filter.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage

@@ -2,7 +2,7 @@
 from concurrent.futures import ProcessPoolExecutor
 import os
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.base.surfaces import known_surfaces, load_surface
 
 CONFIG = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'config')

@@ -16,13 +16,13 @@ from math import degrees, pi
 import rospy
 from sensor_msgs.msg import Imu
 
-from rbx1_nav.base.calibration import corrected, read_measured, turn_by_gyro
+from rbx1_nav.base.calibration_factors import corrected, read_measured, turn_by_gyro
 from rbx1_nav.base.units import wrap_angle
-from rbx1_nav.driving.calibrating import COMMON, Diagnosis, ask, drive, factor_set, make_publisher
+from rbx1_nav.driving.calibration_script import COMMON, Diagnosis, ask, drive, factor_set, make_publisher
 from rbx1_nav.driving.odometry import PoseListener
 from rbx1_nav.driving.script import start_node
 from rbx1_nav.exercise.legs import Turn
-from rbx1_nav.extras.create.fractions import MEASURED, TEST
+from rbx1_nav.extras.create.angle_fractions import MEASURED, TEST
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.parameters import number
 from rbx1_nav.node.private_parameters import param

@@ -15,8 +15,8 @@ from math import hypot
 
 import rospy
 
-from rbx1_nav.base.calibration import corrected, read_measured
-from rbx1_nav.driving.calibrating import COMMON, Diagnosis, ask, drive, factor_set, make_publisher
+from rbx1_nav.base.calibration_factors import corrected, read_measured
+from rbx1_nav.driving.calibration_script import COMMON, Diagnosis, ask, drive, factor_set, make_publisher
 from rbx1_nav.driving.odometry import PoseListener
 from rbx1_nav.driving.script import start_node
 from rbx1_nav.exercise.legs import Straight

@@ -7,17 +7,17 @@ from __future__ import annotations
 
 import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
 
-from rbx1_nav.base.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.base.model_check import ModelCheck
 from rbx1_nav.base.publisher import with_frames
+from rbx1_nav.base.robot_parameters import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.extras.lockstep.simulated_clock import PARAMETERS as CLOCK, read_clock
 from rbx1_nav.node import life
-from rbx1_nav.node.frames import resolve_frame
 from rbx1_nav.node.parameters import elsewhere
 from rbx1_nav.node.private_parameters import param, stored_params
+from rbx1_nav.node.tf_prefix import resolve_frame
 from rbx1_nav.simulation.floor_parameters import FLOOR, ChosenFloor
-from rbx1_nav.simulation.simulated_robot import SimulatedRobot
+from rbx1_nav.simulation.simulated_base_node import SimulatedRobot
 
 PARAMETERS = [
     *ROBOT,

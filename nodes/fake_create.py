@@ -26,8 +26,8 @@ from rbx1_nav.base import messages
 from rbx1_nav.base.clocks import as_ros_time
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create.emulator.emulated_create import PARAMETERS, RobotFaults, make_robot
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
+from rbx1_nav.extras.create.emulator.fault_services import PARAMETERS, RobotFaults, make_robot
 from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal
 from rbx1_nav.node import life
 from rbx1_nav.node.private_parameters import param

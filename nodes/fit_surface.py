@@ -26,18 +26,18 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
 from tqdm import tqdm
 
+from rbx1_nav.base.robot_parameters import Robot, load_robot
+from rbx1_nav.base.surfaces import Surface, known_surfaces, load_surface
 from rbx1_nav.extras.fitting.bags import TopicNames, read_bag
 from rbx1_nav.extras.fitting.comparison import compare, shares
 from rbx1_nav.extras.fitting.end_poses import read_ends
-from rbx1_nav.extras.many_runs.executor import add_arguments, in_order, open_place
-from rbx1_nav.node.config import ConfigError, show_name
-from rbx1_nav.node.files import check_yaml, write_file
 from rbx1_nav.extras.fitting.recording import (
     Recording, check_end, in_force, is_commands_file, read_robot as read_text_files, truth_file)
-from rbx1_nav.base.description import Robot, load_robot
-from rbx1_nav.base.surfaces import Surface, known_surfaces, load_surface
+from rbx1_nav.extras.many_runs.executor import add_arguments, in_order, open_place
 from rbx1_nav.extras.many_runs.plots import check_picture, draw_fit
 from rbx1_nav.node import resources
+from rbx1_nav.node.config import ConfigError, show_name
+from rbx1_nav.node.files import check_yaml, write_file
 
 START, CREATE_START = 'low_ply_carpet', 'create_lab_floor'
 

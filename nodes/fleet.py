@@ -22,21 +22,21 @@ from tf2_msgs.msg import TFMessage
 
 from rbx1_nav.base import messages
 from rbx1_nav.base.clocks import Clock
-from rbx1_nav.base.description import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.publisher import with_frames
+from rbx1_nav.base.robot_parameters import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.exercise.methods import OF_PAGE
 from rbx1_nav.extras.lockstep.simulated_clock import PARAMETERS as CLOCK, read_clock
 from rbx1_nav.node import life
 from rbx1_nav.node.config import ConfigError, Section
-from rbx1_nav.node.frames import with_prefix
 from rbx1_nav.node.master import is_alive
 from rbx1_nav.node.parameters import choice, number
 from rbx1_nav.node.private_parameters import param
+from rbx1_nav.node.tf_prefix import with_prefix
 from rbx1_nav.simulation.floor_parameters import read_floor
-from rbx1_nav.simulation.simulated_robot import SimulatedRobot
+from rbx1_nav.simulation.simulated_base_node import SimulatedRobot
 
 PARAMETERS = [
     number('robots', 0, '', 'number of robots at the beginning: robot1, robot2 and so on', 0, 200, 'a number'),

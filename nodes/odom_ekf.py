@@ -18,7 +18,7 @@ from nav_msgs.msg import Odometry
 
 from rbx1_nav.base import messages
 from rbx1_nav.node import life
-from rbx1_nav.node.rospy_topics import NoDelay
+from rbx1_nav.node.rospy_connections import NoDelay
 
 MESSAGE_WARN_TIME = 5    # s of wall time without a message before a warning
 

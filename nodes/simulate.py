@@ -16,7 +16,7 @@ import sys
 
 from tqdm import tqdm
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.base.surfaces import KEYS, known_surfaces, load_surface
 from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.extras.many_runs.animation import animate, check_animation

@@ -14,10 +14,10 @@ import rospy
 from rbx1_nav.base.model_check import ModelCheck
 from rbx1_nav.base.publisher import with_frames
 from rbx1_nav.extras.create.create_base import CreateBase
-from rbx1_nav.extras.create.settings import PARAMETERS, read_settings
+from rbx1_nav.extras.create.create_parameters import PARAMETERS, read_settings
 from rbx1_nav.node import life
-from rbx1_nav.node.frames import resolve_frame
 from rbx1_nav.node.private_parameters import stored_params
+from rbx1_nav.node.tf_prefix import resolve_frame
 
 
 def main() -> int:

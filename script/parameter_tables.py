@@ -24,8 +24,8 @@ os.environ['ROS_PACKAGE_PATH'] = ROOT      # needed to find the surface files
 def declared(kind, name):
     """Return the parameters of a node, or the keys of a part of a YAML file."""
     if kind == 'key':
-        from rbx1_nav.base import description
-        return getattr(description, name)
+        from rbx1_nav.base import robot_parameters
+        return getattr(robot_parameters, name)
     spec = importlib.util.spec_from_file_location('node', os.path.join(ROOT, 'nodes', name))
     node = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(node)

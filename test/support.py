@@ -22,7 +22,7 @@ from roslib.packages import find_node
 from rbx1_nav.base.surfaces import known_surfaces
 from rbx1_nav.node import resources
 from rbx1_nav.node.master import call
-from rbx1_nav.node.rospy_topics import repair_connections
+from rbx1_nav.node.rospy_connections import repair_connections
 
 COLOR = re.compile('\x1b\\[[0-9;]*m')
 LIMIT = 280      # s of wall time after which a wait fails and is named; less than a test may take

@@ -3,7 +3,7 @@
 from diagnostic_msgs.srv import AddDiagnostics
 import rospy
 
-from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.robot_parameters import read_robot
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.extras.many_runs.simulated_run import simulate
 from rbx1_nav.node import resources

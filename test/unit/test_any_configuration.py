@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import yaml
 
-from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.robot_parameters import read_robot
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.surfaces import KEYS, Surface, read_surface
 from rbx1_nav.filter.ekf_parameters import read_parameters

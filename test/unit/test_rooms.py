@@ -31,13 +31,13 @@ ALLOWED = {
 ALLOWED['nodes'] = set(ALLOWED) - {''}
 # the files that need ROS; all others also run where there is none
 WITH_ROS = {f'rbx1_nav.{room}.{name}' for room, names in {
-    'node': 'addresses frames life master private_parameters resources rospy_topics',
+    'node': 'addresses tf_prefix life master private_parameters resources rospy_connections',
     'base': 'clocks command_subscriber messages model_check publisher running_bases',
-    'driving': 'calibrating listeners odometry rate script stopping',
-    'simulation': 'floor_parameters simulated_robot',
+    'driving': 'calibration_script base_connection odometry rate script stopping',
+    'simulation': 'floor_parameters simulated_base_node',
     'filter': 'conversions ekf_parameters estimate_publisher filter_status sensor_inputs',
     'extras.create': 'create_base create_status create_topics',
-    'extras.create.emulator': 'emulated_create',
+    'extras.create.emulator': 'fault_services',
     'extras.fitting': 'bags',
     'extras.lockstep': 'lockstep simulated_clock watched_nodes',
     'extras.web': 'connections controls hand_drive system',
@@ -143,7 +143,8 @@ def test_the_diagram_leaves_out_an_arrow_if_others_lead_to_the_same_room(monkeyp
 
 
 @pytest.mark.parametrize('node, needed, extra', [
-    ('turtlebot_node', 'extras.create.link', ('simulation', 'extras.create.emulator', 'filter', 'extras.fitting')),
+    ('turtlebot_node', 'extras.create.serial_port',
+     ('simulation', 'extras.create.emulator', 'filter', 'extras.fitting')),
     ('fake_base', 'simulation.wheels', ('extras.create', 'filter', 'extras.fitting')),
     ('ekf', 'filter.filter', ('simulation', 'extras'))])
 def test_a_node_needs_nothing_of_the_others(node, needed, extra):
@@ -154,7 +155,7 @@ def test_a_node_needs_nothing_of_the_others(node, needed, extra):
 
 @pytest.mark.parametrize('module, source', [
     ('rbx1_nav.simulation.wheels', 'import rospy'),
-    ('rbx1_nav.extras.create.link', 'from rbx1_nav.extras.create.emulator.body import Body'),
+    ('rbx1_nav.extras.create.serial_port', 'from rbx1_nav.extras.create.emulator.body import Body'),
     ('rbx1_nav.extras.create.create_base', 'from rbx1_nav.simulation.wheels import Wheels'),
     ('rbx1_nav.extras.many_runs.simulated_run', 'def path():\n    import rospkg'),
     ('rbx1_nav.extras.many_runs.plots', 'name = "rospy"\n__import__(name)'),

@@ -7,7 +7,7 @@ from math import inf
 from threading import Lock
 from typing import Callable, Iterable, NamedTuple, Sequence
 
-from rbx1_nav.base.description import Limits
+from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.base.units import SECOND, clamp
 
 MAX_COMMAND = 1e6   # m/s or rad/s: far above any robot, and far below where sums overflow

@@ -14,7 +14,7 @@ from std_msgs.msg import Float64
 from rbx1_nav.base import messages
 from rbx1_nav.base.clocks import Clock
 from rbx1_nav.base.command_gate import Bursts, CommandGate, RefusedCommand, RejectedCommand, Senders
-from rbx1_nav.base.description import Joint
+from rbx1_nav.base.robot_parameters import Joint
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.units import SECOND
 

@@ -9,9 +9,9 @@ from nav_msgs.msg import Odometry
 import rospy
 from sensor_msgs.msg import Imu, JointState
 
-from rbx1_nav.base.description import Joint
+from rbx1_nav.base.covariances import MEASURED, Reading, Uncertainty
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.base.readings import MEASURED, Reading, Uncertainty
+from rbx1_nav.base.robot_parameters import Joint
 from rbx1_nav.base.units import Covariance
 
 UNKNOWN = 1e6       # variance of a quantity that is not measured, as in diff_drive_controller and robot_pose_ekf

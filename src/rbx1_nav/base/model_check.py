@@ -14,12 +14,12 @@ from diagnostic_updater import DiagnosticStatusWrapper, Updater
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
+from rbx1_nav.base.model_problems import Published, find_prefix_problem, find_problems
 from rbx1_nav.base.publisher import BasePublisher
-from rbx1_nav.base.robot_model import Published, find_prefix_problem, find_problems
 from rbx1_nav.base.urdf import Tree, read_tree
-from rbx1_nav.node.frames import check_prefix, find_prefix
 from rbx1_nav.node.life import end_requested
 from rbx1_nav.node.master import Server
+from rbx1_nav.node.tf_prefix import check_prefix, find_prefix
 
 WAIT = 3.0      # s of wall time in which the other nodes start
 PERIOD = 30.0   # s of wall time between two checks

@@ -4,7 +4,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import NamedTuple
 
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.urdf import Tree
 
 PAGE = 'docs/your_robot.md'

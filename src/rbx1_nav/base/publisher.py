@@ -9,11 +9,11 @@ from sensor_msgs.msg import Imu, JointState
 from tf2_msgs.msg import TFMessage
 
 from rbx1_nav.base import messages
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.covariances import Reading, Uncertainty
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.base.readings import Reading, Uncertainty
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.units import Covariance
-from rbx1_nav.node.rospy_topics import NoDelay
+from rbx1_nav.node.rospy_connections import NoDelay
 
 
 class BasePublisher:

@@ -19,7 +19,7 @@ import rospy
 from rbx1_nav.base.running_bases import ask_refusals, namespaces_of_bases
 from rbx1_nav.node.life import end_requested, sleep, wait_for
 from rbx1_nav.node.master import Server, call
-from rbx1_nav.node.rospy_topics import connected_nodes
+from rbx1_nav.node.rospy_connections import connected_nodes
 
 PERIOD = 0.1        # s between two questions to the master
 # s for a base to answer a call; together with ASK_PERIOD less than 2 s. TCP retransmits after 0.2, 0.6 and 1.4 s, so a

@@ -12,7 +12,7 @@ import rosgraph
 from rosgraph.names import is_legal_name
 import rospy
 
-from rbx1_nav.base.calibration import MAX_FACTOR
+from rbx1_nav.base.calibration_factors import MAX_FACTOR
 from rbx1_nav.driving.odometry import PoseListener
 from rbx1_nav.exercise.legs import Leg
 from rbx1_nav.node.config import ConfigError, Section, YamlValue, show

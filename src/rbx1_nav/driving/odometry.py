@@ -14,9 +14,9 @@ from rbx1_nav.base.units import wrap_angle
 from rbx1_nav.driving.rate import wait_for_tick
 from rbx1_nav.driving.stopping import halt
 from rbx1_nav.exercise.legs import Straight, Turn, is_reachable
-from rbx1_nav.node.frames import resolve_frame
 from rbx1_nav.node.life import wait_for
 from rbx1_nav.node.private_parameters import param
+from rbx1_nav.node.tf_prefix import resolve_frame
 
 MAX_AGE = 0.5       # s: older transforms are not used
 STATIONARY = 0.4    # s without a look at the pose, after which the robot is known to be at rest; less than TRIAL_REST

@@ -25,7 +25,7 @@ import rospy.timer
 from geometry_msgs.msg import Twist
 
 from rbx1_nav.driving import rate, stopping
-from rbx1_nav.driving.listeners import wait_for_listeners
+from rbx1_nav.driving.base_connection import wait_for_listeners
 from rbx1_nav.driving.stopping import Commands, end, shutdown_wanted
 from rbx1_nav.node import life
 from rbx1_nav.node.life import end_requested

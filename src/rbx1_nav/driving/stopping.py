@@ -11,7 +11,7 @@ from geometry_msgs.msg import Twist
 from rospy.msg import args_kwds_to_message
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.driving.listeners import Listeners
+from rbx1_nav.driving.base_connection import Listeners
 from rbx1_nav.node.life import end_requested, exit_status, request_end
 
 MAX_LATE_STOP = SECOND // 20    # ns: a robot that stops later has moved by more than a timed script can ignore

@@ -18,10 +18,10 @@ from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Bounds, Priors, priors
 from rbx1_nav.filter.sensors import MAX_AGE, MAX_LEAD
 from rbx1_nav.node import resources
 from rbx1_nav.node.config import AUTO, ConfigError, Section, YamlValue, show
-from rbx1_nav.node.frames import check_prefix, find_prefix, with_prefix
 from rbx1_nav.node.master import Server
 from rbx1_nav.node.parameters import custom, flag, frame, number, read
 from rbx1_nav.node.private_parameters import named_errors, stored_params
+from rbx1_nav.node.tf_prefix import check_prefix, find_prefix, with_prefix
 
 ANY = 'unknown'     # any floor; AUTO is the surface of a simulated base, otherwise ANY
 DEFAULT = Bounds()

@@ -4,8 +4,8 @@ from __future__ import annotations
 from math import hypot
 from typing import NamedTuple
 
+from rbx1_nav.base.covariances import MIN_VARIANCE
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.base.readings import MIN_VARIANCE
 from rbx1_nav.base.units import SECOND, wrap_angle
 from rbx1_nav.filter.priors import Bounds
 

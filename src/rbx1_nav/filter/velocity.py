@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from rbx1_nav.base.readings import MEASURED
+from rbx1_nav.base.covariances import MEASURED
 from rbx1_nav.base.surfaces import CELL_TRAVELLED, CELL_TURNED
 from rbx1_nav.filter.filter import Filter
 from rbx1_nav.filter.gyro_readings import Measurement

@@ -24,10 +24,10 @@ from rbx1_nav.node.addresses import check_master_uri, check_own_address
 from rbx1_nav.node.config import ConfigError, YamlValue
 from rbx1_nav.node.master import require_master
 from rbx1_nav.node.parameters import Parameter, list_parameters
-from rbx1_nav.node.rospy_topics import repair_connections
 from rbx1_nav.node.private_parameters import (
     check_before_start, check_command_line, future_name, load_params, read_wait_timeout, report_parameters,
     stored_params)
+from rbx1_nav.node.rospy_connections import repair_connections
 
 EXIT_DEADLINE = 1.4         # s of wall time from the request to the exit of the process, whatever hangs
 UNREGISTER_TIMEOUT = 0.25   # s of wall time for the master to unregister the node

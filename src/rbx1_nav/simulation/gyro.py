@@ -7,7 +7,7 @@ from __future__ import annotations
 import random
 from typing import Union
 
-from rbx1_nav.base.readings import MEASURED, MIN_VARIANCE, Reading
+from rbx1_nav.base.covariances import MEASURED, MIN_VARIANCE, Reading
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import clamp
 from rbx1_nav.simulation.slip import RandomErrors

@@ -4,9 +4,9 @@ from __future__ import annotations
 from typing import Sequence
 
 from rbx1_nav.base.command_gate import CommandGate
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.covariances import Reading
 from rbx1_nav.base.kinematics import ORIGIN, Odometry
-from rbx1_nav.base.readings import Reading
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.simulation.floor import Floor, make_floor

@@ -14,15 +14,15 @@ from std_srvs.srv import Empty as EmptyService, EmptyRequest, EmptyResponse
 from rbx1_nav.base import messages
 from rbx1_nav.base.clocks import Clock
 from rbx1_nav.base.command_subscriber import VelocityCommands, subscribe_joints
-from rbx1_nav.base.description import Robot
 from rbx1_nav.base.publisher import BasePublisher
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.running_bases import Refusals
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.node.config import ConfigError
-from rbx1_nav.node.frames import with_prefix
-from rbx1_nav.node.rospy_topics import NoDelay
+from rbx1_nav.node.rospy_connections import NoDelay
+from rbx1_nav.node.tf_prefix import with_prefix
 from rbx1_nav.simulation.simulated_base import make_base, speed_window
 from rbx1_nav.simulation.wheels import IdealWheels
 

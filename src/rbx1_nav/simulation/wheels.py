@@ -4,8 +4,8 @@ from __future__ import annotations
 from math import floor, hypot
 from typing import Union
 
+from rbx1_nav.base.covariances import MEASURED, OdometryErrors, Uncertainty
 from rbx1_nav.base.kinematics import ORIGIN, Odometry
-from rbx1_nav.base.readings import MEASURED, OdometryErrors, Uncertainty
 from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.motors import Delay, Motor
 

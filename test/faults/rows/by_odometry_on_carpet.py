@@ -2,7 +2,7 @@
 from nav_msgs.msg import Odometry
 import rospy
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.extras.many_runs.simulated_run import simulate
 from rbx1_nav.node import resources

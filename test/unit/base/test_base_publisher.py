@@ -2,10 +2,10 @@
 import pytest
 import rospy
 
-from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.covariances import Reading, Uncertainty
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.publisher import BasePublisher
-from rbx1_nav.base.readings import Reading, Uncertainty
+from rbx1_nav.base.robot_parameters import read_robot
 from fake_topics import Topic, replace_topics
 
 CONTROLLER = dict(type='diff_controller', base_width=0.4, wheel_radius=0.05, left_wheel='left', right_wheel='right',

@@ -4,10 +4,10 @@ import random
 import pytest
 
 from rbx1_nav.base.command_gate import Bursts, CommandGate
-from rbx1_nav.base.description import Limits
+from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.simulation.simulated_base import SimulatedBase
 from rbx1_nav.simulation.gyro import IdealGyro
+from rbx1_nav.simulation.simulated_base import SimulatedBase
 from rbx1_nav.simulation.wheels import IdealWheels
 
 TIMEOUT, SPEED = 0.6, 0.2       # s, m/s

@@ -4,7 +4,7 @@ from math import inf, nan, pi
 from hypothesis import given, strategies as st
 import pytest
 
-from rbx1_nav.base.calibration import MAX_GAP, corrected, read_measured, turn_by_gyro
+from rbx1_nav.base.calibration_factors import MAX_GAP, corrected, read_measured, turn_by_gyro
 from rbx1_nav.node.config import ConfigError
 
 

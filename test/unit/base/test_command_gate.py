@@ -4,7 +4,7 @@ from math import inf, nan
 import pytest
 
 from rbx1_nav.base.command_gate import MAX_COMMAND, CommandGate, RejectedCommand
-from rbx1_nav.base.description import Limits
+from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.base.units import SECOND
 
 

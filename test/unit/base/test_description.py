@@ -7,7 +7,7 @@ from math import inf, nan, radians
 import pytest
 import yaml
 
-from rbx1_nav.base.description import load_robot, read_robot
+from rbx1_nav.base.robot_parameters import load_robot, read_robot
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.protocol import MAX_SPEED
 from rbx1_nav.node.config import ConfigError

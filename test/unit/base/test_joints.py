@@ -3,7 +3,7 @@ from math import inf, nan
 
 import pytest
 
-from rbx1_nav.base.description import Joint
+from rbx1_nav.base.robot_parameters import Joint
 
 
 def test_a_joint_reports_the_speed_at_which_it_moves():

@@ -6,10 +6,10 @@ import pytest
 import rospy
 
 from rbx1_nav.base import messages
-from rbx1_nav.base.description import Joint
+from rbx1_nav.base.covariances import Reading, Uncertainty
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.messages import UNKNOWN
-from rbx1_nav.base.readings import Reading, Uncertainty
+from rbx1_nav.base.robot_parameters import Joint
 
 STAMP = rospy.Time(7, 250)
 POSE = Pose(1.0, -2.0, 3.0 + 4 * pi)    # rotated by 3 rad, after two turns

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rbx1_nav.base.readings import HELD, OdometryErrors, UncertainOdometry
+from rbx1_nav.base.covariances import HELD, OdometryErrors, UncertainOdometry
 
 ERRORS = OdometryErrors(0.05, 0.09, 0.07)
 ROUNDING = 0.001, 0.005     # m, rad

@@ -4,8 +4,8 @@ import random
 
 import pytest
 
-from rbx1_nav.base.description import load_robot, read_robot
-from rbx1_nav.base.robot_model import Published, find_prefix_problem, find_problems
+from rbx1_nav.base.model_problems import Published, find_prefix_problem, find_problems
+from rbx1_nav.base.robot_parameters import load_robot, read_robot
 from rbx1_nav.base.urdf import read_tree
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')

@@ -5,7 +5,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import pytest
 import rospy
 
-from rbx1_nav.driving import calibrating as module
+from rbx1_nav.driving import calibration_script as module
 from rbx1_nav.node.config import ConfigError
 
 

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 import rospy
 
-from rbx1_nav.driving import listeners as module
-from rbx1_nav.driving.listeners import ANSWER_TIMEOUT, ASK_PERIOD, PERIOD
+from rbx1_nav.driving import base_connection as module
+from rbx1_nav.driving.base_connection import ANSWER_TIMEOUT, ASK_PERIOD, PERIOD
 
 
 class World:

@@ -4,8 +4,8 @@ from types import SimpleNamespace
 import pytest
 import rospy
 
-from rbx1_nav.driving import listeners
-from rbx1_nav.driving.listeners import wait_for_listeners
+from rbx1_nav.driving import base_connection
+from rbx1_nav.driving.base_connection import wait_for_listeners
 
 TWIST, ODOMETRY = 'geometry_msgs/Twist', 'nav_msgs/Odometry'
 KOBUKI = '/mobile_base/commands/velocity'
@@ -16,13 +16,13 @@ MISSING = 'a base that subscribes to /cmd_vel'
 def fixture_missing(monkeypatch):
     """A function that waits for a base without success, and returns what is missing. It takes the types of topics, and
     the names of their subscribers and publishers."""
-    monkeypatch.setattr(listeners.rosgraph, 'get_master_uri', lambda: 'http://master')
+    monkeypatch.setattr(base_connection.rosgraph, 'get_master_uri', lambda: 'http://master')
 
     def run(kinds, subscribers, publishers=(), topic='/cmd_vel', mappings=(), namespace='/'):
         answers = {'getSystemState': ([*dict(publishers).items()], [*subscribers.items()], []),
                    'getTopicTypes': [*kinds.items()]}
         calls = []
-        monkeypatch.setattr(listeners, 'call', lambda _, method: calls.append(method) or answers[method])
+        monkeypatch.setattr(base_connection, 'call', lambda _, method: calls.append(method) or answers[method])
         monkeypatch.setattr(rospy, 'get_name', lambda: '/script')
         monkeypatch.setattr(rospy, 'get_namespace', lambda: namespace)
         monkeypatch.setattr(rospy.names, 'get_resolved_mappings', lambda: dict(mappings))

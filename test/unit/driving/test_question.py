@@ -5,7 +5,7 @@ import threading
 import pytest
 import rospy
 
-from rbx1_nav.driving import calibrating as question
+from rbx1_nav.driving import calibration_script as question
 from rbx1_nav.node.config import ConfigError
 
 

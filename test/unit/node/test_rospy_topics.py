@@ -5,14 +5,14 @@ import time
 import pytest
 from rospy.impl.registration import RegManager
 
-from rbx1_nav.node import rospy_topics
+from rbx1_nav.node import rospy_connections
 
 
 @pytest.fixture(name='manager')
 def fixture_manager(monkeypatch):
     """Return a RegManager whose thread is not running."""
     monkeypatch.setattr(RegManager, 'publisher_update', RegManager.publisher_update)
-    rospy_topics.repair_connections()
+    rospy_connections.repair_connections()
     return RegManager(None)
 
 
@@ -30,7 +30,7 @@ def test_only_one_thread_at_a_time_connects_to_a_publisher(manager, monkeypatch)
         events.append((uri, 'begin'))
         filter_connects.set() if uri == 'filter' else filter_connects.wait()
         events.append((uri, 'end'))
-    monkeypatch.setattr(rospy_topics, '_connect', connect)
+    monkeypatch.setattr(rospy_connections, '_connect', connect)
     threads = [Thread(target=manager._connect_topic_thread, args=('/odom', uri)) for uri in ('base', 'base', 'filter')]
     [thread.start() for thread in threads], [thread.join() for thread in threads]
     assert [what for uri, what in events if uri == 'base'] == 2 * ['begin', 'end'] and len(events) == 6
@@ -38,10 +38,10 @@ def test_only_one_thread_at_a_time_connects_to_a_publisher(manager, monkeypatch)
 
 def test_connections_are_added_in_the_order_in_which_they_arrive(monkeypatch):
     added = []
-    monkeypatch.setattr(rospy_topics, 'HEADER_TIME', 60)
-    monkeypatch.setattr(rospy_topics, '_read_header', lambda _, late, __: time.sleep(late) or added.append(late))
+    monkeypatch.setattr(rospy_connections, 'HEADER_TIME', 60)
+    monkeypatch.setattr(rospy_connections, '_read_header', lambda _, late, __: time.sleep(late) or added.append(late))
     for late in 0.05, 0:
-        rospy_topics._read_header_in_thread(None, late, None)
+        rospy_connections._read_header_in_thread(None, late, None)
     assert added == [0.05, 0]
 
 
@@ -49,11 +49,11 @@ def test_a_publisher_is_complete_before_somebody_connects(monkeypatch):
     events, connected = [], Event()
 
     def create(_):
-        Thread(target=rospy_topics._read_header_in_thread, args=(None, None, None)).start()
+        Thread(target=rospy_connections._read_header_in_thread, args=(None, None, None)).start()
         connected.wait(0.1)
         events.append('complete')
-    monkeypatch.setattr(rospy_topics, '_create', create)
-    monkeypatch.setattr(rospy_topics, '_read_header', lambda *_: events.append('connected') or connected.set())
-    rospy_topics._create_before_connections(None)
+    monkeypatch.setattr(rospy_connections, '_create', create)
+    monkeypatch.setattr(rospy_connections, '_read_header', lambda *_: events.append('connected') or connected.set())
+    rospy_connections._create_before_connections(None)
     connected.wait()
     assert events == ['complete', 'connected']

@@ -2,7 +2,7 @@
 import ast
 import os
 
-from rbx1_nav.extras.create.emulator.emulated_create import CHANGEABLE, SWITCHES
+from rbx1_nav.extras.create.emulator.fault_services import CHANGEABLE, SWITCHES
 
 ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
 

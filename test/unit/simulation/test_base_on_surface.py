@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.base.command_gate import CommandGate
-from rbx1_nav.base.description import Limits
 from rbx1_nav.base.kinematics import ORIGIN
+from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.gyro import IdealGyro

@@ -1,6 +1,6 @@
 """A running base reads its floor again at a reset: the next run equals a run of a base that was started there."""
 import pytest
-from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.robot_parameters import read_robot
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.node import resources
 from rbx1_nav.node.config import ConfigError

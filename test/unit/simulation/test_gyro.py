@@ -4,7 +4,7 @@ from statistics import mean, pstdev
 
 import pytest
 
-from rbx1_nav.base.readings import MEASURED
+from rbx1_nav.base.covariances import MEASURED
 from rbx1_nav.simulation.gyro import Gyro, IdealGyro
 from rbx1_nav.simulation.slip import RandomErrors
 from sample_surface import SURFACE

@@ -2,7 +2,7 @@
 import numpy
 import pytest
 
-from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.robot_parameters import read_robot
 from rbx1_nav.base.surfaces import KEYS
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.simulation.simulated_base import make_base

@@ -3,8 +3,8 @@ from math import pi
 
 import pytest
 
+from rbx1_nav.base.covariances import MEASURED
 from rbx1_nav.base.kinematics import ORIGIN
-from rbx1_nav.base.readings import MEASURED
 from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.slip import RandomErrors
 from rbx1_nav.simulation.wheels import IdealWheels, Wheels

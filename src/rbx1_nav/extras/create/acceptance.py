@@ -5,14 +5,14 @@ from math import copysign
 from typing import Mapping
 
 from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
-from rbx1_nav.base.readings import Travel
+from rbx1_nav.base.covariances import Travel
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create.connection import Supervisor
-from rbx1_nav.extras.create.motion import Expected
+from rbx1_nav.extras.create.create_parameters import Settings
+from rbx1_nav.extras.create.odometry import Expected
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import ANSWERING, Phase, Sender, wheel_speeds
-from rbx1_nav.extras.create.settings import Settings
 
 MAX_SENDERS = 20    # senders that are stored before the silent ones are removed
 OUTAGE = 3 * SECOND // 10   # longest harmless time in which the robot does not answer or obey

@@ -5,8 +5,8 @@ from collections import deque
 from math import radians
 from typing import Callable, NamedTuple
 
-from rbx1_nav.base.readings import MEASURED, Reading
-from rbx1_nav.extras.create.settings import Settings
+from rbx1_nav.base.covariances import MEASURED, Reading
+from rbx1_nav.extras.create.create_parameters import Settings
 
 MAX_REST = 1000         # maximum number of readings at rest in the offset: half a minute, as in create_node
 MIN_REST = 10           # minimum number; with fewer readings, no angular velocity is reported

@@ -8,11 +8,11 @@ from typing import Callable, Mapping
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
+from rbx1_nav.extras.create.create_parameters import Settings
 from rbx1_nav.extras.create.identification import RATES, Found, Search
-from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import ANSWERING, Kind, Phase, Sender
-from rbx1_nav.extras.create.settings import Settings
+from rbx1_nav.extras.create.serial_port import Link
 
 HOLD = SECOND           # ns without the cause before the driver takes control again
 RETRY = SECOND // 2     # ns between two attempts

@@ -11,17 +11,17 @@ import rospy
 from rbx1_nav.base.clocks import HardwareClock
 from rbx1_nav.base.command_gate import CommandGate
 from rbx1_nav.base.command_subscriber import VelocityCommands
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.covariances import Uncertainty
 from rbx1_nav.base.publisher import BasePublisher
-from rbx1_nav.base.readings import Uncertainty
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.schedule import Schedule
+from rbx1_nav.extras.create.create_parameters import Settings
 from rbx1_nav.extras.create.create_status import CreateStatus
 from rbx1_nav.extras.create.create_topics import CreateTopics
 from rbx1_nav.extras.create.driver import Driver
-from rbx1_nav.extras.create.link import Link
-from rbx1_nav.extras.create.motion import State
+from rbx1_nav.extras.create.odometry import State
 from rbx1_nav.extras.create.protocol import MAX_SPEED
-from rbx1_nav.extras.create.settings import Settings
+from rbx1_nav.extras.create.serial_port import Link
 from rbx1_nav.node import life
 
 WAIT = 0.05         # s to sleep while the line is not open

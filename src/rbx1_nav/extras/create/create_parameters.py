@@ -4,11 +4,11 @@ from __future__ import annotations
 from math import inf
 from typing import NamedTuple
 
-from rbx1_nav.base.description import MODEL, WHEEL_JOINTS, Limits, Robot, read_wheel_joints
-from rbx1_nav.base.readings import OdometryErrors
+from rbx1_nav.base.covariances import OdometryErrors
+from rbx1_nav.base.robot_parameters import MODEL, WHEEL_JOINTS, Limits, Robot, read_wheel_joints
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.fractions import KINDS
+from rbx1_nav.extras.create.angle_fractions import KINDS
 from rbx1_nav.node.config import AUTO, ConfigError, Section, YamlValue, show
 from rbx1_nav.node.parameters import choice, custom, elsewhere, flag, frame, number, read
 

@@ -12,9 +12,9 @@ from rbx1_nav.base.command_subscriber import VelocityCommands
 from rbx1_nav.base.messages import fill_status
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create.driver import Driver
-from rbx1_nav.extras.create.link import Link
-from rbx1_nav.extras.create.motion import CounterTravel
+from rbx1_nav.extras.create.odometry import CounterTravel
 from rbx1_nav.extras.create.protocol import BUMPS, CLIFFS, WHEEL_DROPS
+from rbx1_nav.extras.create.serial_port import Link
 
 LOW, EMPTY = 0.2, 0.05      # levels of the battery's charge, fractions of its capacity
 OVERFULL = 1.1      # the capacity is an estimate of the robot, so a full battery may exceed it a little

@@ -17,13 +17,14 @@ from std_srvs.srv import Empty as EmptyService, EmptyRequest, EmptyResponse
 
 from rbx1_nav.base.clocks import HardwareClock
 from rbx1_nav.base.command_gate import RefusedCommand, RejectedCommand
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.schedule import Schedule
-from rbx1_nav.extras.create import panel, protocol
+from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create.create_status import FAULT, HOT, charge_ratio
 from rbx1_nav.extras.create.driver import Driver
+from rbx1_nav.extras.create.lights_and_songs import BUTTONS, LEDS, Lights, define_song, play_song
 from rbx1_nav.extras.create.protocol import CLIFFS, WHEEL_DROPS
-from rbx1_nav.node.rospy_topics import NoDelay
+from rbx1_nav.node.rospy_connections import NoDelay
 
 SWITCHES = 'bumps_and_wheel_drops'
 # topic, type, packet, bits: a Bool shows whether one of the bits is set, an Empty is published while one is
@@ -32,7 +33,7 @@ SENSORS = (
     ('wheeldrop/left', Bool, SWITCHES, protocol.WHEEL_DROP_LEFT),
     ('wheeldrop/right', Bool, SWITCHES, protocol.WHEEL_DROP_RIGHT), ('wheeldrop', Empty, SWITCHES, WHEEL_DROPS),
     *((name.replace('_', '/', 1), Bool, name, 1) for name in CLIFFS),
-    *((name, Empty, 'buttons', bit) for name, bit in panel.BUTTONS.items()), ('ir_omni', UInt16, 'infrared', 0xff))
+    *((name, Empty, 'buttons', bit) for name, bit in BUTTONS.items()), ('ir_omni', UInt16, 'infrared', 0xff))
 Reading = Mapping[str, int]
 BATTERY: tuple[tuple[str, Any, Callable[[Reading], float]], ...] = (
     ('battery/voltage', Float32, lambda reading: reading['voltage'] / 1000),
@@ -70,7 +71,7 @@ class CreateTopics:
         """lock: held while the driver is used."""
         self.driver, self.clock, self.lock = driver, clock, lock
         self.frames = robot.base_frame_id, robot.odom_frame_id
-        self.lights = panel.Lights()
+        self.lights = Lights()
         self.battery_schedule = Schedule(1)
         # those of `sensors` with a subscriber: to ask all of them at each reading would cost more than the rest
         self.subscribed: list[tuple[rospy.Publisher, Any, str, int]] = []
@@ -93,10 +94,10 @@ class CreateTopics:
                 ('dock', Empty, lambda now, _: orders.dock(now, driver.reading)),
                 ('undock', Empty, lambda now, _: orders.undock(now, driver.reading)),
                 ('define_song', Float32MultiArray,
-                 lambda now, message: orders.send(now, panel.define_song(message.data), driver.reading)),
+                 lambda now, message: orders.send(now, define_song(message.data), driver.reading)),
                 ('play_song', UInt8,
-                 lambda now, message: orders.send(now, panel.play_song(message.data), driver.reading)),
-                *((name, Bool, self.light(partial(lights.set_led, name))) for name in panel.LEDS),
+                 lambda now, message: orders.send(now, play_song(message.data), driver.reading)),
+                *((name, Bool, self.light(partial(lights.set_led, name))) for name in LEDS),
                 ('power_led', UInt8MultiArray, self.light(lights.set_power)),
                 ('set_ascii', UInt8MultiArray, self.light(lambda data: lights.set_digits(data, driver.model)))):
             self.subscribers.append(rospy.Subscriber(name, kind, partial(self.on_order, name, order), queue_size=10))

@@ -11,9 +11,9 @@ from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.connection import RETRY, Contact, Supervisor, causes
+from rbx1_nav.extras.create.create_parameters import Settings
 from rbx1_nav.extras.create.protocol import DOCK
 from rbx1_nav.extras.create.sender import Kind, Phase, Sender
-from rbx1_nav.extras.create.settings import Settings
 
 UNDOCK_SPEED = 0.1          # m/s
 UNDOCK_DISTANCE = 0.2       # m, after which the robot can turn beside its dock

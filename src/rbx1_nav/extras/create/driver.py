@@ -7,20 +7,21 @@ from __future__ import annotations
 from typing import Callable, Mapping, Sequence
 
 from rbx1_nav.base.command_gate import CommandGate
-from rbx1_nav.base.readings import Reading, Travel
+from rbx1_nav.base.covariances import Reading, Travel
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.acceptance import OUTAGE, Acceptance
 from rbx1_nav.extras.create.analog_gyro import AnalogGyro, Step
+from rbx1_nav.extras.create.angle_fractions import Fractions
 from rbx1_nav.extras.create.connection import Contact, Supervisor, causes
-from rbx1_nav.extras.create.fractions import Fractions
-from rbx1_nav.extras.create.link import Link
-from rbx1_nav.extras.create.motion import Counter, CounterTravel, EncoderTravel, Expected, MotionReport, State, unknown
-from rbx1_nav.extras.create.orders import Orders
+from rbx1_nav.extras.create.create_parameters import Settings
+from rbx1_nav.extras.create.docking import Orders
+from rbx1_nav.extras.create.odometry import (
+    Counter, CounterTravel, EncoderTravel, Expected, MotionReport, State, unknown)
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import Kind, Phase, Sender, is_too_fast
-from rbx1_nav.extras.create.settings import Settings
+from rbx1_nav.extras.create.serial_port import Link
 
 INSIST_WAIT = SECOND // 10      # ns without confirmation after which the last stop is repeated
 GAP = 3                         # periods without a reading after which one gyro rate no longer represents all of them

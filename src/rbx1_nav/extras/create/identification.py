@@ -10,9 +10,9 @@ from typing import Callable, NamedTuple, Optional, Sequence
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
-from rbx1_nav.extras.create.link import Link
 from rbx1_nav.extras.create.queries import Layout
 from rbx1_nav.extras.create.sender import Kind, Sender
+from rbx1_nav.extras.create.serial_port import Link
 
 RATES = (57600, 115200, 19200)      # of a Create, of a Create 2, and of either after its buttons were held
 REPLY_TIME = SECOND * 12 // 100     # ns after the last byte of a query within which the reply arrives

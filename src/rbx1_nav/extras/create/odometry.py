@@ -7,12 +7,12 @@ from __future__ import annotations
 from math import degrees, hypot, radians
 from typing import Mapping, NamedTuple, Union
 
+from rbx1_nav.base.covariances import MEASURED, Reading, Travel, UncertainOdometry
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.base.readings import MEASURED, Reading, Travel, UncertainOdometry
 from rbx1_nav.base.units import SECOND, Covariance
-from rbx1_nav.extras.create.fractions import UNSURE, Fractions, lost_part
+from rbx1_nav.extras.create.angle_fractions import UNSURE, Fractions, lost_part
+from rbx1_nav.extras.create.create_parameters import Settings
 from rbx1_nav.extras.create.protocol import MAX_SPEED, Model
-from rbx1_nav.extras.create.settings import Settings
 
 WHEEL_LIMIT = 1.3 * MAX_SPEED / 1000    # m/s: faster than any wheel
 MARGIN = 0.015          # m of wheel travel that one reading may miss and the next one include

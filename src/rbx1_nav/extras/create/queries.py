@@ -14,7 +14,7 @@ from typing import Dict, NamedTuple
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
-from rbx1_nav.extras.create.motion import STILL, Counter, Expected
+from rbx1_nav.extras.create.odometry import STILL, Counter, Expected
 from rbx1_nav.extras.create.sender import Kind, Sender
 
 REPLY_TIMEOUT = SECOND // 5     # time from a query to the first byte of its reply

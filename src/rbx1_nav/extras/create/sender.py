@@ -10,7 +10,7 @@ from typing import Callable
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
-from rbx1_nav.extras.create.motion import STILL, Expected
+from rbx1_nav.extras.create.odometry import STILL, Expected
 
 BACKLOG = SECOND // 100     # backlog of bytes on the line beyond which only a stop is sent at once
 

@@ -18,8 +18,8 @@ from serial.tools import list_ports
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
+from rbx1_nav.extras.create.create_parameters import Settings
 from rbx1_nav.extras.create.guardian import Guardian
-from rbx1_nav.extras.create.settings import Settings
 from rbx1_nav.node.config import AUTO
 
 PSEUDO_TERMINALS = range(136, 144)      # major device numbers (Linux kernel, admin-guide/devices.txt)

@@ -12,8 +12,8 @@ import warnings
 
 import numpy
 
-from rbx1_nav.base.description import Robot
 from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.units import SECOND, Array
 from rbx1_nav.node.config import ConfigError, show_name
 

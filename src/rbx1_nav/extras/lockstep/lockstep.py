@@ -190,7 +190,7 @@ class Lockstep:
         awake: dict[str, float] = {}    # s of wall time for which each node was awake
         said = False
         while not self.ended():
-            name = self.watch.awake()
+            name = self.watch.waits_for()
             if not name:
                 return
             now = monotonic()

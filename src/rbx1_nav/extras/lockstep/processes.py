@@ -206,7 +206,7 @@ class Network:
         return any(b') R' in os.pread(file, 512, 0) for file in self.files)
 
 
-def awake(processes: Iterable[Process], network: Network | None = None) -> Process | Network | None:
+def find_awake(processes: Iterable[Process], network: Network | None = None) -> Process | Network | None:
     """Return the first Process that is not asleep, or the Network if messages may be in transit between them; None if
     all of them were asleep at one moment, and nothing was in transit."""
     processes = list(processes)

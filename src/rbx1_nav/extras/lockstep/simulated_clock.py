@@ -17,12 +17,12 @@ from rbx1_nav.base.schedule import CLOCK_STEP, Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.lockstep.lockstep import Lockstep
 from rbx1_nav.extras.lockstep.watched_nodes import Watch
-from rbx1_nav.node import life, rospy_topics
+from rbx1_nav.node import life, rospy_connections
 from rbx1_nav.node.config import ConfigError
 from rbx1_nav.node.master import call, is_alive
 from rbx1_nav.node.parameters import flag, number
 from rbx1_nav.node.private_parameters import param
-from rbx1_nav.node.rospy_topics import NoDelay
+from rbx1_nav.node.rospy_connections import NoDelay
 
 CATCH_UP = 0.1      # s of wall time: a delay up to this is made up for
 CLOCK_PERIOD = 0.7  # s of wall time between two searches for another clock
@@ -93,7 +93,7 @@ class OwnClock(Clock):
         self.publisher = rospy.Publisher('/clock', ClockMessage, NoDelay(self.greet_with_time), queue_size=10)
         self.nodes = Watch(self.publisher)
         self.lockstep = Lockstep(self.nodes, self.report, life.end_requested.is_set)
-        rospy_topics.gates.append(self.nodes.connecting)
+        rospy_connections.gates.append(self.nodes.connecting)
         self.not_in_step: dict[str, str] = {}   # reasons, by the name of the node
 
     def greet_with_time(self, _: str, publish: Callable[[ClockMessage], None]) -> None:

@@ -12,9 +12,9 @@ from urllib.parse import urlparse
 import rosgraph
 import rospy
 
-from rbx1_nav.extras.lockstep.graph import Graph
+from rbx1_nav.extras.lockstep.command_sources import Graph
+from rbx1_nav.extras.lockstep.processes import Network, Process, find_awake
 from rbx1_nav.extras.lockstep.sockets import listening_process, own_process, peer_process
-from rbx1_nav.extras.lockstep.processes import Network, Process, awake
 from rbx1_nav.node.master import call
 
 # s of wall time to wait for a new connection of cmd_vel; less than NODE_TIMEOUT. A busy machine takes more than 1 s
@@ -164,7 +164,7 @@ class Watch:
             'runs on another machine, in another container or as another user, so that its process is not visible '
             'from here')
 
-    def awake(self) -> str | None:
+    def waits_for(self) -> str | None:
         """Return the name of a node that is awake, or a text about one that is connecting or starting; None if all are
         asleep."""
         # before the update, which finds the nodes that receive them
@@ -175,7 +175,7 @@ class Watch:
         naps = self._naps()     # before the check, which finds whatever wakes after this
         watched = {**self.processes, MASTER: self.master, self.own_name: self.own}
         processes = {process: name for name, process in watched.items() if process and name not in self.forgotten}
-        found = awake(processes, self.network)
+        found = find_awake(processes, self.network)
         if found:
             return processes[found] if isinstance(found, Process) else self.own_name    # or messages are in transit
         naps |= self._naps()    # a thread may have waited for a lock before
@@ -210,13 +210,13 @@ class Watch:
         return self.own_name if count else None
 
     def _missed(self, names: set[str]) -> str | None:
-        """Return whether to wait for one of these nodes, which are not connected, as awake() does."""
+        """Return whether to wait for one of these nodes, which are not connected, as waits_for() does."""
         now = monotonic()
         late = [name for name in sorted(names) if now < self.missed.setdefault(name, now) + CONNECT_TIME]
         return STARTING % late[0] if late else None
 
     def _join(self, joining: list[Permission]) -> str | None:
-        """Let publishers of commands connect; return whether they do so, as awake() does."""
+        """Let publishers of commands connect; return whether they do so, as waits_for() does."""
         now = monotonic()
         for each in joining:
             each.since = each.since or now
@@ -225,7 +225,7 @@ class Watch:
         return STARTING % 'a publisher of commands' if waits else None
 
     def _sleeps_by_the_wall_clock(self, naps: set[str]) -> str | None:
-        """Return whether to wait for a node that is starting and sleeps by the wall clock, as awake() does."""
+        """Return whether to wait for a node that is starting and sleeps by the wall clock, as waits_for() does."""
         now = monotonic()
         for name in sorted(naps):
             process = self.processes.get(name)

@@ -7,7 +7,7 @@ from typing import Iterator, Mapping, NamedTuple, Sequence, Tuple
 import numpy
 import yaml
 
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.surfaces import KEYS, Surface
 from rbx1_nav.base.units import Array
 from rbx1_nav.exercise.legs import StuckError, out_and_back_by_odometry

@@ -14,7 +14,7 @@ import re
 from typing import Any, Callable, Iterator, NamedTuple, Sequence, TypeVar
 import warnings
 
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.exercise.legs import StuckError
 from rbx1_nav.exercise.methods import METHODS

@@ -10,7 +10,7 @@ import signal
 import threading
 from typing import Any, Callable, Deque, Iterable, Iterator, TypeVar
 
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.extras.many_runs.cluster import Place, open_cluster
 from rbx1_nav.node.config import ConfigError

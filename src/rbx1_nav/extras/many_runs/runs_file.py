@@ -14,7 +14,7 @@ import time
 from typing import Any, Iterable, Iterator, Mapping, Sequence
 from zlib import crc32
 
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.extras.many_runs.cases import RESULTS, Chunk, Row, simulate_row
 from rbx1_nav.node.config import ConfigError, show, show_name
 from rbx1_nav.node.files import write_file

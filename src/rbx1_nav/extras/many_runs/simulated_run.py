@@ -8,8 +8,8 @@ from functools import partial
 from math import pi
 from typing import Callable, Mapping, NamedTuple
 
-from rbx1_nav.base.description import Robot
 from rbx1_nav.base.kinematics import Pose
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND, Covariance
 from rbx1_nav.exercise.legs import REST, TRIAL_REST, Leg, Motion, out_and_back, out_and_back_by_odometry

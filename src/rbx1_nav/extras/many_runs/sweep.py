@@ -10,7 +10,7 @@ from typing import Iterator, NamedTuple, Sequence
 import numpy
 from tqdm import tqdm
 
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.surfaces import KEYS
 from rbx1_nav.base.units import SECOND, Array
 from rbx1_nav.extras.many_runs.cases import (

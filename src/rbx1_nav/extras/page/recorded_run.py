@@ -4,7 +4,7 @@ from __future__ import annotations
 from math import inf
 import sys
 
-from rbx1_nav.base.description import Robot
+from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.many_runs.simulated_run import CALIBRATION, Simulation

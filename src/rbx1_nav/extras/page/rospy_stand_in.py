@@ -10,7 +10,7 @@ from typing import Any, Callable, Iterator, NoReturn
 from rbx1_nav.base.command_gate import RejectedCommand
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.many_runs.simulated_run import Simulation
-from rbx1_nav.extras.page.recording import ERROR, INFO, WARNING, Stopped
+from rbx1_nav.extras.page.recorded_run import ERROR, INFO, WARNING, Stopped
 
 LEVELS = {'logdebug': INFO, 'loginfo': INFO, 'logwarn': WARNING, 'logerr': ERROR, 'logfatal': ERROR}
 

@@ -9,13 +9,13 @@ import traceback
 from types import FrameType
 from typing import Any, Callable, Mapping
 
-from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.robot_parameters import read_robot
 from rbx1_nav.base.surfaces import read_surface
 from rbx1_nav.exercise.legs import StuckError
 from rbx1_nav.exercise.methods import OF_PAGE
 from rbx1_nav.extras.many_runs.simulated_run import CALIBRATION, EXERCISE, PARAMETERS, run
-from rbx1_nav.extras.page.recording import ERROR, INFO, RecordedSimulation, Stopped
-from rbx1_nav.extras.page.stand_in import ROSException, ROSInterruptException, Rospy
+from rbx1_nav.extras.page.recorded_run import ERROR, INFO, RecordedSimulation, Stopped
+from rbx1_nav.extras.page.rospy_stand_in import ROSException, ROSInterruptException, Rospy
 from rbx1_nav.extras.web.choices import CHOICES, DEFAULTS, SCRIPTS, read_choice
 from rbx1_nav.simulation.slip import read_seed
 

@@ -5,12 +5,12 @@ import pytest
 
 from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
+from rbx1_nav.extras.create.create_parameters import read_settings
 from rbx1_nav.extras.create.driver import Driver
 from rbx1_nav.extras.create.emulator.body import Body
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import SerialLine
 from rbx1_nav.extras.create.protocol import MODELS
-from rbx1_nav.extras.create.settings import read_settings
 
 SURFACES = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'config', 'surfaces')
 STEP = SECOND // 500

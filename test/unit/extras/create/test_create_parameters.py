@@ -5,8 +5,8 @@ import os
 import pytest
 import yaml
 
-from rbx1_nav.extras.create.emulator.emulated_create import PARAMETERS
-from rbx1_nav.extras.create.settings import read_settings
+from rbx1_nav.extras.create.create_parameters import read_settings
+from rbx1_nav.extras.create.emulator.fault_services import PARAMETERS
 from rbx1_nav.node.config import ConfigError, Section
 from rbx1_nav.node.parameters import read
 

@@ -8,7 +8,7 @@ import rospy
 from sensor_msgs.msg import BatteryState
 
 from fake_topics import Topic, replace_topics
-from rbx1_nav.base.description import Limits
+from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.extras.create.create_topics import CreateTopics, battery_state
 from rbx1_nav.extras.create.protocol import CREATE, MODELS
 

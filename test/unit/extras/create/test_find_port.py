@@ -3,9 +3,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.extras.create import link as module
+from rbx1_nav.extras.create import serial_port as module
 from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal
-from rbx1_nav.extras.create.link import describe_adapter, find_port
+from rbx1_nav.extras.create.serial_port import describe_adapter, find_port
 
 FTDI = 'FTDI USB-Serial 42'
 

@@ -9,7 +9,7 @@ import pytest
 
 from rbx1_nav.extras.create import guardian
 from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal
-from rbx1_nav.extras.create.link import PortError, open_port
+from rbx1_nav.extras.create.serial_port import PortError, open_port
 from waiting import wait_for
 
 STOP = b'\0\0\x91\0\0\0\0\x80'
@@ -20,7 +20,7 @@ GUARDED = '''
 import sys, time
 sys.path.insert(0, sys.argv[1])
 from rbx1_nav.extras.create.guardian import Guardian
-from rbx1_nav.extras.create.link import open_port
+from rbx1_nav.extras.create.serial_port import open_port
 port = open_port(sys.argv[2], 115200)
 guardian = Guardian(port.fileno(), bytes.fromhex(sys.argv[3]))
 port.write(bytes.fromhex(sys.argv[4]))

@@ -4,7 +4,7 @@ from math import radians
 import pytest
 
 from rbx1_nav.extras.create.analog_gyro import AnalogGyro, Step
-from rbx1_nav.extras.create.settings import read_settings
+from rbx1_nav.extras.create.create_parameters import read_settings
 
 PERIOD = 1 / 16     # s between two readings: sums of this number are exact
 SCALE = radians(150) / 512      # rad/s per count

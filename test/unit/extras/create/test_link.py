@@ -10,7 +10,7 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol
 from rbx1_nav.extras.create.identification import Search
 from rbx1_nav.extras.create.sender import Phase, Sender
-from rbx1_nav.extras.create.link import BEAT, LineLost, Link
+from rbx1_nav.extras.create.serial_port import BEAT, LineLost, Link
 
 LIMIT = 30      # s after which a wait fails
 

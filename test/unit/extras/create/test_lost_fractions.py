@@ -4,7 +4,7 @@ from math import degrees, pi, trunc
 import pytest
 
 from rbx1_nav.base.surfaces import load_surface
-from rbx1_nav.extras.create.fractions import AUTO, KEPT, LOST, MEASURED, TEST, Fractions
+from rbx1_nav.extras.create.angle_fractions import AUTO, KEPT, LOST, MEASURED, TEST, Fractions
 
 from driven_create import SURFACES, started
 

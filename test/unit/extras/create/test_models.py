@@ -3,7 +3,7 @@ import importlib
 
 import pytest
 
-from rbx1_nav.extras.create import protocol, settings
+from rbx1_nav.extras.create import create_parameters, protocol
 from rbx1_nav.extras.create.protocol import CREATE, CREATE_2, FULL, MODELS, PASSIVE, SAFE
 from rbx1_nav.node.config import ConfigError
 
@@ -20,10 +20,10 @@ MULE = CREATE._replace(
 def add_a_model(monkeypatch):
     """Add the entry."""
     monkeypatch.setitem(MODELS, MULE.name, MULE)
-    monkeypatch.setattr(driven_create, 'read_settings', importlib.reload(settings).read_settings)
+    monkeypatch.setattr(driven_create, 'read_settings', importlib.reload(create_parameters).read_settings)
     yield
     monkeypatch.undo()
-    importlib.reload(settings)
+    importlib.reload(create_parameters)
 
 
 def check_it_drives(driven, model):

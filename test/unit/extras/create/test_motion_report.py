@@ -1,11 +1,11 @@
 """The reported motion: corrected pose, mean velocity, wheel travel, standstill and variances."""
 import pytest
 
-from rbx1_nav.base.readings import Travel
+from rbx1_nav.base.covariances import Travel
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create.motion import NOWHERE, MotionReport
+from rbx1_nav.extras.create.create_parameters import read_settings
+from rbx1_nav.extras.create.odometry import NOWHERE, MotionReport
 from rbx1_nav.extras.create.protocol import CREATE
-from rbx1_nav.extras.create.settings import read_settings
 
 ROUNDING = 0.002, 0.03      # m, rad
 MEASURED = 1e-6             # variance of a good measurement: 1 mm/s, 1 mrad/s

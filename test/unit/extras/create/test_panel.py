@@ -4,7 +4,7 @@ from math import inf, nan
 import pytest
 
 from rbx1_nav.base.command_gate import RefusedCommand, RejectedCommand
-from rbx1_nav.extras.create.panel import Lights, define_song, play_song
+from rbx1_nav.extras.create.lights_and_songs import Lights, define_song, play_song
 from rbx1_nav.extras.create.protocol import CREATE, CREATE_2, command
 
 from driven_create import BOTH, started

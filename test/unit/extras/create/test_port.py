@@ -6,9 +6,9 @@ import termios
 
 import pytest
 
-from rbx1_nav.extras.create import link as module
+from rbx1_nav.extras.create import serial_port as module
 from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal
-from rbx1_nav.extras.create.link import PortError, open_port, reason
+from rbx1_nav.extras.create.serial_port import PortError, open_port, reason
 
 
 @pytest.fixture(name='terminal')

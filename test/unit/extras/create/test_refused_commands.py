@@ -6,10 +6,10 @@ import pytest
 from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create.acceptance import Acceptance
-from rbx1_nav.extras.create.motion import NOWHERE, Expected
+from rbx1_nav.extras.create.create_parameters import read_settings
+from rbx1_nav.extras.create.odometry import NOWHERE, Expected
 from rbx1_nav.extras.create.protocol import CLIFFS, CREATE
 from rbx1_nav.extras.create.sender import Phase
-from rbx1_nav.extras.create.settings import read_settings
 
 NOW = 10 * SECOND
 

@@ -4,8 +4,8 @@ import pytest
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
-from rbx1_nav.extras.create.fractions import KEPT, Fractions
-from rbx1_nav.extras.create.motion import STILL, CounterTravel, EncoderTravel
+from rbx1_nav.extras.create.angle_fractions import KEPT, Fractions
+from rbx1_nav.extras.create.odometry import STILL, CounterTravel, EncoderTravel
 from rbx1_nav.extras.create.queries import Queries
 from rbx1_nav.extras.create.sender import Phase, Sender, is_too_fast, wheel_speeds
 

@@ -6,8 +6,8 @@ import numpy
 import pytest
 
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.fractions import KEPT, Fractions
-from rbx1_nav.extras.create.motion import NOWHERE, STILL, CounterTravel, EncoderTravel, Expected
+from rbx1_nav.extras.create.angle_fractions import KEPT, Fractions
+from rbx1_nav.extras.create.odometry import NOWHERE, STILL, CounterTravel, EncoderTravel, Expected
 
 COUNT = 1 / protocol.CREATE_2.counts_per_metre      # m
 

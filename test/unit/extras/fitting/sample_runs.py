@@ -3,7 +3,7 @@ from math import pi
 
 import numpy
 
-from rbx1_nav.base.description import read_robot
+from rbx1_nav.base.robot_parameters import read_robot
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.fitting.recording import Commands, Rates, Recording, Track

@@ -5,8 +5,8 @@ from hypothesis import given, strategies as st
 import numpy
 import pytest
 
-from rbx1_nav.base.description import read_robot
 from rbx1_nav.base.kinematics import ORIGIN
+from rbx1_nav.base.robot_parameters import read_robot
 from rbx1_nav.extras.fitting.recording import Commands, Track, check_end, check_recording, in_force, relative
 from rbx1_nav.node.config import ConfigError
 from sample_runs import EXERCISE, record

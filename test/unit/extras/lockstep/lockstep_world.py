@@ -39,7 +39,7 @@ class Processes:
     def update(self):
         return False
 
-    def awake(self):
+    def waits_for(self):
         self.looks += 1
         if self.work:
             self.work.pop(0)()

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.extras.lockstep.processes import Process, awake, polling, still_polling
+from rbx1_nav.extras.lockstep.processes import Process, find_awake, polling, still_polling
 from waiting import wait_for
 
 BEGIN = 'import socket, sys, threading, time\nprint("up", flush=True)\n'
@@ -60,7 +60,7 @@ def test_what_has_been_woken_is_awake_until_it_has_answered(start, polls):
                 watched = [polling_process(child), *(polling_process(start(POLL + 'sys.stdin.read()')) for _ in '12')]
             for _ in range(2000):
                 connection.send(b'x')
-                while awake(watched):
+                while find_awake(watched):
                     pass
                 assert connection.recv(1, socket.MSG_DONTWAIT) == b'x'
 
@@ -68,7 +68,7 @@ def test_what_has_been_woken_is_awake_until_it_has_answered(start, polls):
 def test_a_thread_that_polls_need_not_be_waited_for(start):
     child = start(POLL + 'sys.stdin.readline(); sys.stdin.read()')
     process = polling_process(child)
-    wait_for(lambda: not awake([process]))
+    wait_for(lambda: not find_awake([process]))
     rest, total = process.activity(True), process.activity(False)
     wait_for(lambda: process.activity(False) != total)
     assert process.activity(True) == rest
@@ -80,22 +80,22 @@ def test_a_thread_that_polls_need_not_be_waited_for(start):
 def test_a_stopped_process_has_not_finished(start):
     child = start('sys.stdin.read()')
     process = Process(child.pid)
-    wait_for(lambda: not awake([process]))
+    wait_for(lambda: not find_awake([process]))
     child.send_signal(signal.SIGSTOP)
-    wait_for(lambda: awake([process]))
+    wait_for(lambda: find_awake([process]))
     for _ in range(100):
-        assert awake([process]) is process
+        assert find_awake([process]) is process
     child.send_signal(signal.SIGCONT)
-    wait_for(lambda: not awake([process]))
+    wait_for(lambda: not find_awake([process]))
 
 
 def test_a_process_that_has_ended_counts_as_asleep(start):
     child = start('sys.stdin.read()')
     process = Process(child.pid)
     child.kill()
-    wait_for(lambda: not awake([process]))
+    wait_for(lambda: not find_awake([process]))
     child.wait()
-    assert not awake([process]) and not polling([process])
+    assert not find_awake([process]) and not polling([process])
     with pytest.raises(OSError):
         Process(child.pid)
 
@@ -108,12 +108,12 @@ def test_a_thread_that_takes_the_place_of_another_one_is_watched(start):
     folder = f'/proc/{child.pid}/task/'
     before = wait_for(lambda: len(found := os.listdir(folder)) == 2 and found)
     process = Process(child.pid, child.pid)
-    wait_for(lambda: not awake([process]))
+    wait_for(lambda: not find_awake([process]))
     child.stdin.write(b'\n')
     child.stdin.flush()
     wait_for(lambda: len(found := os.listdir(folder)) == 2 and found != before)
     for _ in range(20):
-        assert awake([process]) is process
+        assert find_awake([process]) is process
 
 
 def test_a_thread_that_polls(start):
@@ -121,7 +121,7 @@ def test_a_thread_that_polls(start):
     threads = wait_for(lambda: polling([process]))
     wait_for(lambda: not still_polling(threads))
     sleeper = Process(start('time.sleep(1000)').pid)
-    wait_for(lambda: not awake([sleeper]))
+    wait_for(lambda: not find_awake([sleeper]))
     wait_for(lambda: not polling([sleeper]))
     # a process that waits for a message does not poll, even if it has just run
     reader = start('for line in sys.stdin: print("read", flush=True)')
@@ -130,7 +130,7 @@ def test_a_thread_that_polls(start):
         reader.stdin.write(b'\n')
         reader.stdin.flush()
         reader.stdout.readline()
-        wait_for(lambda: not awake([process]))
+        wait_for(lambda: not find_awake([process]))
         assert not polling([process])
 
 
@@ -142,23 +142,23 @@ def test_messages_in_transit(start):
         child.stdin.write(b'\n')
         child.stdin.flush()
         child.stdout.readline()
-        wait_for(lambda: not awake([process]))
+        wait_for(lambda: not find_awake([process]))
         return False
-    wait_for(lambda: not awake([process]))
-    assert not awake([process], SimpleNamespace(busy=lambda: False))
+    wait_for(lambda: not find_awake([process]))
+    assert not find_awake([process], SimpleNamespace(busy=lambda: False))
     network = SimpleNamespace(busy=lambda: True)
-    assert awake([process], network) is network
+    assert find_awake([process], network) is network
     # it may have sent a message after the network was checked
-    assert awake([process], SimpleNamespace(busy=run_and_sleep)) is process
+    assert find_awake([process], SimpleNamespace(busy=run_and_sleep)) is process
 
 
 def test_a_process_that_has_run_between_two_looks_is_awake():
     """A process was asleep when it was checked, but perhaps not at the same moment as the others."""
     times = iter([1, 2])
     process = fake(lambda _: next(times))
-    assert awake([process]) is process
+    assert find_awake([process]) is process
     times = iter([1, 1])
-    assert awake([process]) is None
+    assert find_awake([process]) is None
 
 
 def test_a_process_that_ran_while_another_one_was_looked_at_is_awake():
@@ -166,10 +166,10 @@ def test_a_process_that_ran_while_another_one_was_looked_at_is_awake():
     sender = fake(lambda _: times[-1])
     # it is asleep when it is checked; then the sender wakes it, and is itself asleep when it is checked
     woken = fake(sleeps=lambda: times.append(6) is None)
-    assert awake([woken, sender]) is sender
+    assert find_awake([woken, sender]) is sender
 
 
 def test_what_a_thread_that_polls_has_woken_after_its_check_is_awake():
     asleep = iter([True, False])
     woken = fake(sleeps=lambda: next(asleep))
-    assert awake([woken, *(fake(polls=True) for _ in '123')]) is woken
+    assert find_awake([woken, *(fake(polls=True) for _ in '123')]) is woken

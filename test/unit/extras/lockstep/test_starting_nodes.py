@@ -25,8 +25,8 @@ def test_a_driver_that_sleeps_by_the_wall_clock_before_its_first_command_is_wait
     monkeypatch.setattr(watched_nodes, 'DRIVER_SLEEP', 1000.0)
     world.listen(world.connect('/node', 'time.sleep(1000)'))
     if waits:
-        wait_for(lambda: world.watch.awake() == STARTING)
-        assert {world.watch.awake() for _ in range(20)} == {STARTING}
+        wait_for(lambda: world.watch.waits_for() == STARTING)
+        assert {world.watch.waits_for() for _ in range(20)} == {STARTING}
         world.watch.starting.pop('/node')
     world.settle()
     assert not world.watch.starting
@@ -69,7 +69,7 @@ def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatc
     node = world.connect('/node', 'import select; select.select([s], [], []); sys.stdin.read()')
     world.listen(node)
     world.watch.news.clear()
-    assert wait_for(lambda: (name := world.watch.awake()) != '/node' and name) == STARTING
+    assert wait_for(lambda: (name := world.watch.waits_for()) != '/node' and name) == STARTING
     world.settle()
 
 
@@ -81,10 +81,10 @@ def test_a_publisher_that_registers_while_the_clock_runs_is_waited_for(world, mo
     world.settle()
     master.publishers = [['/cmd_vel', ['/node', '/gone']]]
     before = master.asked
-    assert world.watch.awake() is None and master.asked == before
+    assert world.watch.waits_for() is None and master.asked == before
     master.work()
-    wait_for(lambda: world.watch.awake() == STARTING)
-    assert {world.watch.awake() for _ in range(20)} == {STARTING} and master.asked > before
+    wait_for(lambda: world.watch.waits_for() == STARTING)
+    assert {world.watch.waits_for() for _ in range(20)} == {STARTING} and master.asked > before
     world.commands.connections = [world.clock.connections[0]]
     world.settle()
     assert world.watch.drivers == {'/node'}
@@ -110,7 +110,7 @@ def test_a_publisher_that_registers_while_the_master_is_asked_is_waited_for(worl
     world.settle()
     assert world.watch.graph.registered == set()
     world.listen(world.connect('/node'))
-    wait_for(lambda: world.watch.awake() == STARTING)
+    wait_for(lambda: world.watch.waits_for() == STARTING)
 
 
 def test_a_publisher_that_never_connects_is_waited_for_only_once(world, monkeypatch):
@@ -119,7 +119,7 @@ def test_a_publisher_that_never_connects_is_waited_for_only_once(world, monkeypa
     monkeypatch.setattr(watched_nodes, 'CONNECT_TIME', 0.5)
     world.listen(world.connect('/node'))
     master.work()
-    wait_for(lambda: world.watch.awake() == STARTING)
+    wait_for(lambda: world.watch.waits_for() == STARTING)
     world.settle()
     master.work()
     world.settle()
@@ -152,13 +152,13 @@ def test_a_publisher_of_commands_is_connected_when_all_nodes_are_asleep(world, m
             connected.append(topic)
     connected = []
     world.drive(world.connect('/computing', 'while True: pass'))
-    wait_for(lambda: world.watch.awake() == '/computing')
+    wait_for(lambda: world.watch.waits_for() == '/computing')
     connect('/joint_command')
     monkeypatch.setattr(watched_nodes, 'AWAKE_TIME', 1000.0)
     thread = threading.Thread(target=connect, args=['/cmd_vel'], daemon=True)
     thread.start()
     wait_for(lambda: world.watch.joining)
-    assert {world.watch.awake() for _ in range(20)} == {'/computing'} and connected == ['/joint_command']
+    assert {world.watch.waits_for() for _ in range(20)} == {'/computing'} and connected == ['/joint_command']
     world.drive()
     world.settle()
     thread.join()
@@ -174,20 +174,20 @@ def test_a_publisher_whose_subscription_to_the_clock_is_not_connected_yet_is_not
     permission = watched_nodes.Permission()
     world.watch.joining.append(permission)
     master.work()
-    wait_for(lambda: world.watch.awake() == STARTING)
-    assert {world.watch.awake() for _ in range(20)} == {STARTING} and not permission.is_set()
+    wait_for(lambda: world.watch.waits_for() == STARTING)
+    assert {world.watch.waits_for() for _ in range(20)} == {STARTING} and not permission.is_set()
     world.listen(world.connect('/node'))
-    wait_for(lambda: (world.watch.awake() or '').endswith('which is starting') and permission.is_set())
+    wait_for(lambda: (world.watch.waits_for() or '').endswith('which is starting') and permission.is_set())
 
 
 def test_a_new_subscriber_is_greeted_when_all_nodes_are_asleep(world):
     greeted = []
     world.watch.greetings += [(True, lambda: greeted.append('state')), (False, lambda: greeted.append('time'))]
     world.drive(world.connect('/computing', 'while True: pass'))
-    wait_for(lambda: world.watch.awake() == '/computing')
+    wait_for(lambda: world.watch.waits_for() == '/computing')
     assert not greeted
     world.drive(world.connect('/driver'))
-    wait_for(lambda: not world.watch.awake() and greeted)
+    wait_for(lambda: not world.watch.waits_for() and greeted)
     assert greeted == ['time', 'state']
 
 
@@ -199,12 +199,12 @@ def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(wo
         if not greeted:
             world.watch.greetings[:] = [(False, lambda: greeted.append('/new'))]
     monkeypatch.setattr(watched_nodes, 'awake', check)
-    assert world.watch.awake() is None and not greeted
+    assert world.watch.waits_for() is None and not greeted
     # it has connected after the update
     old, new = world.connect('/old'), world.connect('/new')
     world.listen(old)
     world.clock.connections = [old, new]
     assert world.watch.groups(world.clock) == [([old], True)]
-    wait_for(lambda: world.watch.awake() and greeted)
+    wait_for(lambda: world.watch.waits_for() and greeted)
     receivers = [each for group, _ in world.watch.groups(world.clock) for each in group]
     assert len(receivers) == 2 and new in receivers

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from rbx1_nav.extras.lockstep import watched_nodes
-from rbx1_nav.extras.lockstep.graph import sources_of
+from rbx1_nav.extras.lockstep.command_sources import sources_of
 from rbx1_nav.extras.lockstep.sockets import peer_process
 from waiting import wait_for
 from watch_world import Master, worlds
@@ -30,12 +30,12 @@ def make_world(monkeypatch):
 
 
 def test_a_driver_is_watched_while_it_is_connected(world):
-    assert world.watch.awake() is None
+    assert world.watch.waits_for() is None
     world.drive(world.connect('/driver'))
     assert world.watch.drivers == {'/driver'}
     world.settle()
     world.drive(*world.commands.connections, world.connect('/computing', 'while True: pass'))
-    wait_for(lambda: world.watch.awake() == '/computing')
+    wait_for(lambda: world.watch.waits_for() == '/computing')
     world.drive()
     assert not world.watch.drivers and not world.watch.processes
     world.settle()
@@ -78,7 +78,7 @@ def test_a_node_that_starts_is_watched_until_it_waits(world):
     world.children[-1].stdin.write(b'\n')
     world.children[-1].stdin.flush()
     time.sleep(0.05)
-    assert world.watch.awake() is None
+    assert world.watch.waits_for() is None
 
 
 @pytest.mark.skipif(not socket.has_dualstack_ipv6(), reason='no IPv6')
@@ -97,7 +97,7 @@ def test_a_peer_that_listens_for_both_families_is_found():
 def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
     """There is no update() in between: Lockstep forgets a node while it waits for it, and then looks again."""
     world.drive(world.connect('/driver', 'while True: pass'))
-    wait_for(lambda: world.watch.awake() == '/driver')
+    wait_for(lambda: world.watch.waits_for() == '/driver')
     assert world.watch.forget('/driver')
     world.settle()
     assert not world.watch.drivers

@@ -40,7 +40,7 @@ class World:
 
     def settle(self):
         """Wait until all nodes are asleep."""
-        wait_for(lambda: not self.watch.awake())
+        wait_for(lambda: not self.watch.waits_for())
 
 
 class Asleep:

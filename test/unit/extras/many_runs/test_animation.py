@@ -5,7 +5,7 @@ from PIL import Image, ImageChops
 from matplotlib.figure import Figure
 import pytest
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.extras.many_runs import animation
 from rbx1_nav.extras.many_runs.simulated_run import simulate

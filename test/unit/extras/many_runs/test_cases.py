@@ -4,7 +4,7 @@ import os
 import numpy
 import pytest
 
-from rbx1_nav.base.description import Limits, load_robot
+from rbx1_nav.base.robot_parameters import Limits, load_robot
 from rbx1_nav.extras.many_runs.cases import RESULTS, Case, add_rows, chunks, combine, read_sweep, simulate_row, units
 from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, simulate
 from rbx1_nav.extras.many_runs.summary import Summary

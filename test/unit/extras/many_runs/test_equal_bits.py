@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.exercise.legs import StuckError
 from rbx1_nav.extras.many_runs.cases import Case, simulate_row, simulate_rows

@@ -6,7 +6,7 @@ from statistics import median
 import numpy
 import pytest
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.extras.many_runs.simulated_run import simulate

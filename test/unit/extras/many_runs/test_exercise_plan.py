@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, simulate
 
 TURTLEBOT = load_robot(os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'config', 'turtlebot.yaml'))

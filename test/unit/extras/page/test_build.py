@@ -24,7 +24,7 @@ def test_the_core_is_what_the_runs_import_and_the_configuration(page):
     with zipfile.ZipFile(io.BytesIO(page.pack_core())) as archive:
         names = set(archive.namelist())
         assert json.loads(archive.read('config.json')) == CONFIG
-    assert {'rbx1_nav/__init__.py', 'rbx1_nav/extras/page/stand_in.py', 'rbx1_nav/filter/filter.py'} < names
+    assert {'rbx1_nav/__init__.py', 'rbx1_nav/extras/page/rospy_stand_in.py', 'rbx1_nav/filter/filter.py'} < names
     assert not [name for name in names if name.startswith(('rbx1_nav/driving/', 'rbx1_nav/extras/create/'))]
 
 

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from rbx1_nav.base.description import load_robot
+from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.base.surfaces import known_surfaces, load_surface
 from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, simulate

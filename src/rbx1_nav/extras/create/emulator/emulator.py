@@ -5,13 +5,13 @@ from math import inf
 from struct import Struct
 from typing import Callable, Sequence
 
+from rbx1_nav.base.units import SECOND, clamp
 from rbx1_nav.extras.create.emulator.body import Body
-from rbx1_nav.extras.create.emulator.panel import Panel
+from rbx1_nav.extras.create.emulator.lights_and_songs import Panel
 from rbx1_nav.extras.create.emulator.serial_line import SerialLine
 from rbx1_nav.extras.create.protocol import (
     BAUD_RATES, COUNTED, IN_PLACE_LEFT, IN_PLACE_RIGHT, MAX_SPEED, OFF, PASSIVE, ROBOT_RADIUS, SAFE, STRAIGHT,
     UPDATE_PERIOD, Command, Model, encode_frame, packets_format, single_packets)
-from rbx1_nav.base.units import SECOND, clamp
 
 TICK = round(UPDATE_PERIOD * SECOND)
 BOOT_TIME = SECOND      # time after power-on during which the robot receives nothing
