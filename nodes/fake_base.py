@@ -10,7 +10,7 @@ import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the othe
 from rbx1_nav.base.model_check import ModelCheck
 from rbx1_nav.base.publisher import with_frames
 from rbx1_nav.base.robot_parameters import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
-from rbx1_nav.base.running_bases import Refusals
+from rbx1_nav.base.refusals import Refusals
 from rbx1_nav.extras.lockstep.simulated_clock import PARAMETERS as CLOCK, read_clock
 from rbx1_nav.node import life
 from rbx1_nav.node.parameters import elsewhere

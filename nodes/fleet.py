@@ -25,7 +25,7 @@ from rbx1_nav.base.clocks import Clock
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.publisher import with_frames
 from rbx1_nav.base.robot_parameters import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
-from rbx1_nav.base.running_bases import Refusals
+from rbx1_nav.base.refusals import Refusals
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.exercise.methods import OF_PAGE
 from rbx1_nav.extras.lockstep.simulated_clock import PARAMETERS as CLOCK, read_clock

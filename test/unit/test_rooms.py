@@ -32,7 +32,7 @@ ALLOWED['nodes'] = set(ALLOWED) - {''}
 # the files that need ROS; all others also run where there is none
 WITH_ROS = {f'rbx1_nav.{room}.{name}' for room, names in {
     'node': 'addresses tf_prefix life master private_parameters resources rospy_connections',
-    'base': 'clocks command_subscriber messages model_check publisher running_bases',
+    'base': 'clocks command_subscriber messages model_check publisher refusals running_bases',
     'driving': 'calibration_script base_connection odometry rate script stopping',
     'simulation': 'floor_parameters simulated_base_node',
     'filter': 'conversions ekf_parameters estimate_publisher filter_status sensor_inputs',

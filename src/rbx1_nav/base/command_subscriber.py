@@ -13,9 +13,11 @@ from std_msgs.msg import Float64
 
 from rbx1_nav.base import messages
 from rbx1_nav.base.clocks import Clock
-from rbx1_nav.base.command_gate import Bursts, CommandGate, RefusedCommand, RejectedCommand, Senders
+from rbx1_nav.base.command_gate import CommandGate, RefusedCommand, RejectedCommand
+from rbx1_nav.base.conflicting_commands import Senders
+from rbx1_nav.base.late_commands import Bursts
 from rbx1_nav.base.robot_parameters import Joint
-from rbx1_nav.base.running_bases import Refusals
+from rbx1_nav.base.refusals import Refusals
 from rbx1_nav.base.units import SECOND
 
 RECENT = SECOND * 3 // 2    # ns: an older contradiction is not shown

@@ -16,7 +16,8 @@ from typing import Any, Callable
 import rosgraph
 import rospy
 
-from rbx1_nav.base.running_bases import ask_refusals, namespaces_of_bases
+from rbx1_nav.base.refusals import ask_refusals
+from rbx1_nav.base.running_bases import namespaces_of_bases
 from rbx1_nav.node.life import end_requested, sleep, wait_for
 from rbx1_nav.node.master import Server, call
 from rbx1_nav.node.rospy_connections import connected_nodes

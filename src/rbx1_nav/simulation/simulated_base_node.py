@@ -16,7 +16,7 @@ from rbx1_nav.base.clocks import Clock
 from rbx1_nav.base.command_subscriber import VelocityCommands, subscribe_joints
 from rbx1_nav.base.publisher import BasePublisher
 from rbx1_nav.base.robot_parameters import Robot
-from rbx1_nav.base.running_bases import Refusals
+from rbx1_nav.base.refusals import Refusals
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.surfaces import Surface
 from rbx1_nav.base.units import SECOND

@@ -4,7 +4,8 @@ from xmlrpc.client import Fault
 
 from rospy.impl.masterslave import ROSHandler
 
-from rbx1_nav.base.running_bases import Refusals, ask_refusals, namespaces_of_bases, private_namespace
+from rbx1_nav.base.refusals import Refusals, ask_refusals
+from rbx1_nav.base.running_bases import namespaces_of_bases, private_namespace
 
 PUBLISHERS = {'/odom': ['/arbotix'], '/r1/odom': ['/fleet'], '/r2/odom': ['/fleet'],
               '/r2/cmd_vel': ['/r2/out_and_back']}

@@ -13,7 +13,7 @@ from rbx1_nav.base.clocks import Clock
 from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.command_subscriber import VelocityCommands
 from rbx1_nav.base.robot_parameters import Joint, Limits
-from rbx1_nav.base.running_bases import Refusals
+from rbx1_nav.base.refusals import Refusals
 from rbx1_nav.base.units import SECOND
 from fake_topics import Topic, replace_topics
 

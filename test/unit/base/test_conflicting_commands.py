@@ -1,5 +1,5 @@
 """Commands of several senders contradict each other if they alternate and differ."""
-from rbx1_nav.base.command_gate import Senders
+from rbx1_nav.base.conflicting_commands import Senders
 from rbx1_nav.base.units import SECOND
 
 TICK = SECOND // 50

@@ -3,7 +3,8 @@ import random
 
 import pytest
 
-from rbx1_nav.base.command_gate import Bursts, CommandGate
+from rbx1_nav.base.command_gate import CommandGate
+from rbx1_nav.base.late_commands import Bursts
 from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.simulation.gyro import IdealGyro

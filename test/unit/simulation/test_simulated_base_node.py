@@ -7,7 +7,7 @@ from std_srvs.srv import EmptyRequest
 
 from rbx1_nav.base.clocks import Clock
 from rbx1_nav.base.robot_parameters import read_robot
-from rbx1_nav.base.running_bases import Refusals
+from rbx1_nav.base.refusals import Refusals
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.simulation import simulated_base_node as module
 from rbx1_nav.simulation.simulated_base_node import SimulatedRobot
