@@ -14,7 +14,7 @@ from rbx1_nav.base.kinematics import Odometry, Pose
 from rbx1_nav.base.robot_parameters import Limits
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
-from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.input_checks import Imu, Odom
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 from rbx1_nav.simulation.simulated_base import make_base
 

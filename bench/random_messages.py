@@ -13,7 +13,7 @@ from rbx1_nav.base.covariances import MIN_VARIANCE
 from rbx1_nav.base.kinematics import Pose, arc
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
-from rbx1_nav.filter.inputs import MAX_VARIANCE, Imu, Odom, RejectedMessage
+from rbx1_nav.filter.input_checks import MAX_VARIANCE, Imu, Odom, RejectedMessage
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, priors
 
 LEAST_RATIO = -1e-12    # smallest eigenvalue / largest one

@@ -21,12 +21,13 @@ from std_msgs.msg import Empty
 
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
-from rbx1_nav.filter.conversions import from_odometry, from_set_pose
+from rbx1_nav.filter.conversions import frames_of, from_odometry, from_set_pose
 from rbx1_nav.filter.ekf_parameters import PARAMETERS, load_parameters, make_filter, read_parameters
 from rbx1_nav.filter.estimate_publisher import EstimatePublisher
 from rbx1_nav.filter.filter_status import Diagnostics, LimitedLog
-from rbx1_nav.filter.inputs import RejectedMessage, check
-from rbx1_nav.filter.sensor_inputs import FrameTree, ImuInput, OneSender, frames_of
+from rbx1_nav.filter.imu_input import FrameTree, ImuInput
+from rbx1_nav.filter.input_checks import RejectedMessage, check
+from rbx1_nav.filter.one_sender import OneSender
 from rbx1_nav.node import life
 
 
@@ -122,11 +123,10 @@ class Ekf:
             self.diagnostics.rejected[topic] += 1
             self.log.add(rospy.logerr, f'{rospy.resolve_name(topic)}: {error}; rejected')
             return
-        if not (self.combined and self.frames):
-            return
-        self.diagnostics.received[topic] = now
-        if self.combined.estimate and not life.end_requested.is_set():      # topics are closed during shutdown
-            self.publisher.update(self.combined, *self.frames)
+        if self.combined and self.frames:
+            self.diagnostics.received[topic] = now
+            if self.combined.estimate and not life.end_requested.is_set():      # topics are closed during shutdown
+                self.publisher.update(self.combined, *self.frames)
 
     def run(self) -> None:
         """Run until shutdown is requested."""

@@ -35,7 +35,7 @@ WITH_ROS = {f'rbx1_nav.{room}.{name}' for room, names in {
     'base': 'clocks command_subscriber messages model_check publisher refusals running_bases',
     'driving': 'calibration_script base_connection odometry rate script stopping',
     'simulation': 'floor_parameters simulated_base_node',
-    'filter': 'conversions ekf_parameters estimate_publisher filter_status sensor_inputs',
+    'filter': 'conversions ekf_parameters estimate_publisher filter_status imu_input one_sender',
     'extras.create': 'create_base create_status create_topics',
     'extras.create.emulator': 'fault_services',
     'extras.fitting': 'bags',

@@ -10,10 +10,11 @@ from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.units import SECOND, Covariance, wrap_angle
 from rbx1_nav.filter.filter import ENOUGH_TURN, Filter
 from rbx1_nav.filter.gyro_readings import Readings
-from rbx1_nav.filter.inputs import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
+from rbx1_nav.filter.input_checks import Imu, Odom, check_imu, check_odom, distance, format_pose, has_jumped
 from rbx1_nav.filter.pose_errors import Yaw
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Priors, Bounds
-from rbx1_nav.filter.sensors import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals, Doubts
+from rbx1_nav.filter.sensor_contradictions import Doubts
+from rbx1_nav.filter.sensor_timeouts import IMU, MAX_LEAD, MAX_WAIT, ODOM, Arrivals
 from rbx1_nav.filter.standstill import CARRIED, STANDSTILL, Standstill
 from rbx1_nav.filter.velocity import Motion, Velocity, velocity
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from math import isfinite, isnan, sqrt
+from types import SimpleNamespace
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
@@ -11,7 +12,7 @@ from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.messages import unit_quaternion, yaw_of
 from rbx1_nav.base.units import Covariance
 from rbx1_nav.filter.imu_mounting import ImuData
-from rbx1_nav.filter.inputs import MAX_VARIANCE, Odom, check, check_number, check_variance
+from rbx1_nav.filter.input_checks import MAX_VARIANCE, Odom, check, check_number, check_variance
 from rbx1_nav.node.config import show
 
 ROUNDING = 1e-6     # tolerance for rounding errors of a received correlation
@@ -67,3 +68,17 @@ def from_set_pose(message: PoseWithCovarianceStamped, output_frame: str) -> tupl
     xx, xy, x_yaw, yy, y_yaw, yaw = ((rows[i][j] + rows[j][i]) / 2
                                      for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)))
     return pose, ((xx, xy, x_yaw), (xy, yy, y_yaw), (x_yaw, y_yaw, yaw))
+
+
+def frames_of(message: Odometry, parameters: SimpleNamespace) -> tuple[str, str]:
+    """Return the frames of an Odometry message and of the robot, without leading slashes. Raises RejectedMessage.
+
+    parameters: see read_parameters(). The frame of the robot must differ from output_frame.
+    """
+    base_frame = parameters.base_footprint_frame or message.child_frame_id.lstrip('/') or (
+        parameters.default_base_frame)
+    frames = message.header.frame_id.lstrip('/'), base_frame
+    for field, name in zip(('header.frame_id', 'child_frame_id'), frames):
+        check(field, show(name), name, 'the name of a frame')
+    check('child_frame_id', show(frames[1]), frames[1] != parameters.output_frame, 'a frame other than output_frame')
+    return frames

@@ -15,7 +15,7 @@ from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Bounds, Priors, priors
-from rbx1_nav.filter.sensors import MAX_AGE, MAX_LEAD
+from rbx1_nav.filter.sensor_timeouts import MAX_AGE, MAX_LEAD
 from rbx1_nav.node import resources
 from rbx1_nav.node.config import AUTO, ConfigError, Section, YamlValue, show
 from rbx1_nav.node.master import Server

@@ -15,7 +15,7 @@ from rbx1_nav.base.kinematics import relative_frame
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
-from rbx1_nav.filter.sensor_inputs import FrameTree
+from rbx1_nav.filter.imu_input import FrameTree
 from rbx1_nav.node.rospy_connections import NoDelay
 
 TRANSFORM_TIME = 2 * SECOND   # ns after the first estimate to wait for a transform to the robot's frame

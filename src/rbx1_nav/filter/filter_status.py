@@ -14,8 +14,8 @@ from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
 from rbx1_nav.base.messages import fill_status
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
+from rbx1_nav.filter.one_sender import OneSender
 from rbx1_nav.filter.pose_errors import BIAS
-from rbx1_nav.filter.sensor_inputs import OneSender
 
 INTERVAL = 1.0      # s between two log lines of one kind
 MAX_KINDS = 10      # lines in this time

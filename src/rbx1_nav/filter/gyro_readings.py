@@ -6,7 +6,7 @@ from math import inf
 from typing import Deque, NamedTuple, Tuple
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.inputs import Imu
+from rbx1_nav.filter.input_checks import Imu
 from rbx1_nav.filter.priors import Bounds
 
 SHORT = SECOND // 20    # ns between two readings in which the rate hardly changes

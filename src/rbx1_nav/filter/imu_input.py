@@ -1,16 +1,12 @@
-"""The inputs of the filter: of one node's odometry, and of an IMU that may be mounted upside down or tilted.
-
-The mounting of an IMU, and the parent of the robot's frame, are read from the tree of frames that other nodes publish.
+"""The IMU of the filter, which may be mounted upside down or tilted: its mounting, and the parent of the robot's frame,
+are read from the tree of frames that other nodes publish.
 """
 from __future__ import annotations
 
-from math import acos, degrees, inf
+from math import acos, degrees
 import time
-from types import SimpleNamespace
 from typing import Callable, Tuple
 
-from nav_msgs.msg import Odometry
-import rosgraph
 import rospy
 from sensor_msgs.msg import Imu as ImuMessage
 from tf2_msgs.msg import TFMessage
@@ -18,75 +14,12 @@ from tf2_msgs.msg import TFMessage
 from rbx1_nav.base.messages import unit_quaternion
 from rbx1_nav.filter.conversions import from_imu
 from rbx1_nav.filter.imu_mounting import UPRIGHT, GyroInput, Vector, inverse, multiply, vertical_axis
-from rbx1_nav.filter.inputs import Imu, check
+from rbx1_nav.filter.input_checks import Imu, check
 from rbx1_nav.node.config import show
-from rbx1_nav.node.master import call
 
-MESSAGE_WARN_TIME = 5.0        # s of wall time to wait for the first message before a line is logged
 TRANSFORM_WARN_TIME = 1.0      # s of wall time to wait for a transform before a line is logged
 
-SENSORS = {'odom': 'odometry', 'imu_data': 'IMU messages'}      # by topic
-
 Rotation = Tuple[float, float, float, float]    # quaternion (x, y, z, w)
-
-
-class OneSender:
-    """Accepts the messages of the first node only, until it disconnects or falls silent."""
-
-    def __init__(self, topic: str, silence: float, warn: Callable[[str], None],
-                 restart: Callable[[str], None] = lambda name: None) -> None:
-        """topic: name; silence: time after which another node is accepted, s; warn(text): logs a warning;
-        restart(name): called before the first message of a node is accepted."""
-        self.name = topic
-        self.topic = rospy.resolve_name(topic)
-        self.silence = silence
-        self.warn = warn
-        self.restart = restart
-        self.header: dict[str, str] | None = None   # the header of the connection of the accepted node
-        self.heard: rospy.Time | None = None        # arrival time of its last message
-        self.report_time = time.monotonic() + MESSAGE_WARN_TIME     # s of the monotonic clock; infinite after report()
-
-    def accepts(self, header: dict[str, str], subscriber: rospy.Subscriber | None) -> bool:
-        """Return whether to accept a message that just arrived on the connection with this header. subscriber: of the
-        topic; None if it is just being created."""
-        connections, now = subscriber.impl.connections if subscriber else [], rospy.Time.now()
-        if self.header is not None and header is not self.header and any(
-                connection.header is self.header for connection in connections) and (
-                0 <= (now - self.heard).to_sec() <= self.silence):
-            self.warn('%s: messages from %s ignored: %s also publishes this topic'
-                      % (self.topic, header['callerid'], self.header['callerid']))
-            return False
-        if header is not self.header:
-            self.restart(header['callerid'])
-        self.header, self.heard = header, now
-        return True
-
-    def report(self) -> None:
-        """Log once who publishes the topic, if no message has arrived for a while."""
-        if self.heard is not None or time.monotonic() < self.report_time:
-            return
-        try:
-            publishers = dict(call(rosgraph.get_master_uri(), 'getSystemState')[0]).get(self.topic)
-        except Exception:       # the master does not answer: asked again later
-            return
-        self.report_time = inf
-        reason = (f"{self.topic} is published by {', '.join(publishers)}, but no message has arrived" if publishers else
-                  f'nobody publishes {self.topic}')
-        self.warn(f'Waiting for {SENSORS[self.name]}: {reason}')
-
-
-def frames_of(message: Odometry, parameters: SimpleNamespace) -> tuple[str, str]:
-    """Return the frames of an Odometry message and of the robot, without leading slashes. Raises RejectedMessage.
-
-    parameters: see read_parameters(). The frame of the robot must differ from output_frame.
-    """
-    base_frame = parameters.base_footprint_frame or message.child_frame_id.lstrip('/') or (
-        parameters.default_base_frame)
-    frames = message.header.frame_id.lstrip('/'), base_frame
-    for field, name in zip(('header.frame_id', 'child_frame_id'), frames):
-        check(field, show(name), name, 'the name of a frame')
-    check('child_frame_id', show(frames[1]), frames[1] != parameters.output_frame, 'a frame other than output_frame')
-    return frames
 
 
 class FrameTree:

@@ -8,7 +8,7 @@ from math import atan2, sqrt
 from typing import Callable, NamedTuple, Sequence, Tuple
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.inputs import Imu, check, check_number, check_variance
+from rbx1_nav.filter.input_checks import Imu, check, check_number, check_variance
 
 UPRIGHT = (0.0, 0.0, 1.0)
 DEFAULT_VARIANCE = 0.00017 ** 2     # for an IMU that gives none: robot_pose_ekf, OdomEstimationNode::imuCallback

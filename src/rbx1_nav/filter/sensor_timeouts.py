@@ -1,13 +1,10 @@
-"""Which sensor is silent, and which one is doubted: stamps and arrivals of the messages, and reports to the user."""
+"""Stamps and arrivals of the messages of each sensor: which messages are late, and which sensor has timed out."""
 from __future__ import annotations
 
-from math import degrees
 from typing import Callable
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.filter import Filter
-from rbx1_nav.filter.inputs import RejectedMessage
-from rbx1_nav.filter.pose_errors import BIAS
+from rbx1_nav.filter.input_checks import RejectedMessage
 
 ODOM, IMU = 'odom', 'imu_data'  # the sensors, by their topics
 
@@ -16,21 +13,6 @@ MAX_AGE = 60 * SECOND   # ns that a stamp may be behind; simulated time may be a
 MAX_WAIT = 5 * SECOND   # ns that odometry waits for a gyro that is late but not silent
 OTHER_CLOCK = ('; synchronize the clocks of both computers, or for a bag, set use_sim_time before the nodes start, and '
                'play it with --clock')
-# what is logged about wheels and gyro
-TEXTS = {
-    'rest': 'the robot has not been at rest yet, so the bias of the gyro is unknown: the heading may drift by '
-            '{bias:.1f} degrees/s or more',
-    'bias': 'the bias of imu_data seems to have drifted since the last rest, by {drift:.2f} degrees/s: the heading is '
-            'uncertain; let it rest',
-    'both': 'odom has turned by {lost:.2f} rad more than imu_data since the last rest: one of them is wrong; the '
-            'heading is uncertain',
-    'scale': 'imu_data and odom differ by {scale:.0f} % in all turns: the scale of the gyro or the track width is '
-             'wrong; the heading is uncertain',
-    'gyro': 'odom has turned by {lost:.2f} rad more than imu_data since the last rest: the gyro fails, and is not used '
-            'until it turns with the wheels',
-    'dead': 'imu_data has never changed, while odom has turned: the gyro does not measure, and is not used until it '
-            'turns with the wheels'}
-LEFT = {'gyro', 'dead'}     # the gyro is not used
 
 
 def rejection(stamp: int, expected: str, time: int, advice: str = '') -> RejectedMessage:
@@ -107,21 +89,3 @@ class Arrivals:
             self.timed_out[sensor] = True
             reason = reason or f'no valid message for more than {self.timeout / SECOND:g} s'
             self.warn(f'{sensor} has timed out: {reason}; not used until it recovers')
-
-
-class Doubts:
-    """Logs what wheels and gyro show of each other: each finding once, and a gyro that is left each time."""
-
-    def __init__(self, warn: Callable[[str], None]) -> None:
-        self.warn = warn
-        self.warned: set[str] = set()
-
-    def report(self, found: str, ekf: Filter) -> None:
-        """Report what a Filter has found, a key of TEXTS, or '' if wheels and gyro agree."""
-        if found and found not in self.warned:
-            self.warned.add(found)
-            self.warn(TEXTS[found].format(bias=degrees(ekf.sigma(BIAS)), drift=degrees(ekf.drift), lost=ekf.lost,
-                                          scale=100 * ekf.scale_error))
-        elif not ekf.gyro_left and self.warned & LEFT:
-            self.warned -= LEFT
-            self.warn('odom and imu_data agree again')

@@ -7,7 +7,7 @@ from rbx1_nav.base.covariances import MEASURED
 from rbx1_nav.base.surfaces import CELL_TRAVELLED, CELL_TURNED
 from rbx1_nav.filter.filter import Filter
 from rbx1_nav.filter.gyro_readings import Measurement
-from rbx1_nav.filter.inputs import Odom
+from rbx1_nav.filter.input_checks import Odom
 from rbx1_nav.filter.pose_errors import BIAS, CARRY_SPEED, SLIP
 
 

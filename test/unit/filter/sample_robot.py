@@ -4,7 +4,7 @@ import pytest
 from rbx1_nav.base.kinematics import Pose, arc
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
-from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.input_checks import Imu, Odom
 from sample_priors import PRIORS
 
 STEP = SECOND // 50

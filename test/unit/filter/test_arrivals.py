@@ -2,8 +2,8 @@
 import pytest
 
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.inputs import RejectedMessage
-from rbx1_nav.filter.sensors import IMU, ODOM, Arrivals
+from rbx1_nav.filter.input_checks import RejectedMessage
+from rbx1_nav.filter.sensor_timeouts import IMU, ODOM, Arrivals
 
 NOW = 1000 * SECOND
 

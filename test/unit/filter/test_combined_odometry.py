@@ -7,7 +7,7 @@ import pytest
 from rbx1_nav.base.kinematics import ORIGIN, Pose, arc
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.filter import FIRST_NOISE
-from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.input_checks import Imu, Odom
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact

@@ -2,7 +2,7 @@
 import pytest
 
 from rbx1_nav.base.kinematics import arc
-from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.input_checks import Imu, Odom
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 from sample_robot import Robot
 

@@ -9,7 +9,7 @@ from sensor_msgs.msg import Imu
 
 from rbx1_nav.filter.conversions import from_imu, from_odometry, from_set_pose
 from rbx1_nav.filter.imu_mounting import ImuData
-from rbx1_nav.filter.inputs import Odom, RejectedMessage
+from rbx1_nav.filter.input_checks import Odom, RejectedMessage
 
 STAMP = rospy.Time(7, 250)
 YAW = sin(1.5), cos(1.5)        # z and w of a rotation by 3 rad

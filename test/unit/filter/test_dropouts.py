@@ -6,7 +6,7 @@ import pytest
 from rbx1_nav.base.kinematics import arc
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.gyro_readings import MOST
-from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.input_checks import Imu, Odom
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact
 

@@ -8,10 +8,10 @@ import rospy
 
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.filter import ekf_parameters as module
+from rbx1_nav.filter.conversions import frames_of
 from rbx1_nav.filter.ekf_parameters import read_parameters
-from rbx1_nav.filter.inputs import RejectedMessage
+from rbx1_nav.filter.input_checks import RejectedMessage
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR, Bounds, priors
-from rbx1_nav.filter.sensor_inputs import frames_of
 from rbx1_nav.node.config import ConfigError
 from sample_priors import SURFACES
 

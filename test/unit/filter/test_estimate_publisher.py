@@ -10,8 +10,8 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter import estimate_publisher as module
 from rbx1_nav.filter.combined_odometry import Estimate
 from rbx1_nav.filter.estimate_publisher import EstimatePublisher
-from rbx1_nav.filter.inputs import Odom
-from rbx1_nav.filter.sensor_inputs import FrameTree
+from rbx1_nav.filter.imu_input import FrameTree
+from rbx1_nav.filter.input_checks import Odom
 from rbx1_nav.filter.velocity import Velocity
 from fake_topics import replace_topics
 

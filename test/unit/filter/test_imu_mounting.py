@@ -6,7 +6,7 @@ import pytest
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.imu_mounting import GyroInput, ImuData, multiply, turn_about, vertical_axis
-from rbx1_nav.filter.inputs import Imu, RejectedMessage
+from rbx1_nav.filter.input_checks import Imu, RejectedMessage
 
 UPSIDE_DOWN = vertical_axis((1.0, 0.0, 0.0, 0.0))       # rolled by 180 degrees
 VARIANCES = (1e-6, 1e-6, 1e-6)

@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.inputs import Odom, has_jumped
+from rbx1_nav.filter.input_checks import Odom, has_jumped
 from rbx1_nav.filter.priors import Bounds
 
 

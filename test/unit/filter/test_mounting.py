@@ -7,9 +7,9 @@ import rospy
 from sensor_msgs.msg import Imu
 from tf2_msgs.msg import TFMessage
 
-from rbx1_nav.filter import sensor_inputs
-from rbx1_nav.filter.inputs import RejectedMessage
-from rbx1_nav.filter.sensor_inputs import FrameTree, ImuInput
+from rbx1_nav.filter import imu_input
+from rbx1_nav.filter.imu_input import FrameTree, ImuInput
+from rbx1_nav.filter.input_checks import RejectedMessage
 
 S, C = sin(pi / 4), cos(pi / 4)     # for rotations by 90 degrees
 ROLLED, PITCHED, YAWED = Quaternion(S, 0.0, 0.0, C), Quaternion(0.0, S, 0.0, C), Quaternion(0.0, 0.0, S, C)
@@ -52,7 +52,7 @@ def test_an_imu_turned_by_90_degrees(transforms, rate, variance):
 
 def test_readings_wait_for_the_transform_and_are_rejected_after_a_second(monkeypatch):
     now, heard = [50.0], []
-    monkeypatch.setattr(sensor_inputs.time, 'monotonic', lambda: now[0])
+    monkeypatch.setattr(imu_input.time, 'monotonic', lambda: now[0])
     # without the node's own transforms
     imu = ImuInput('imu_data', make_tree(('base', 'imu', ROLLED), node=rospy.get_name()), lambda _: None)
     for now[0] in 50.0, 50.99:

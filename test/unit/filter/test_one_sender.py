@@ -3,7 +3,7 @@ from types import SimpleNamespace
 
 import rospy
 
-from rbx1_nav.filter.sensor_inputs import OneSender
+from rbx1_nav.filter.one_sender import OneSender
 
 
 def test_another_node_is_accepted_when_the_first_is_silent_or_gone(monkeypatch):

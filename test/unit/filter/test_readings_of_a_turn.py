@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.gyro_readings import MIN_DENSITY, NOISE_FACTOR, Readings
-from rbx1_nav.filter.inputs import Imu
+from rbx1_nav.filter.input_checks import Imu
 from rbx1_nav.filter.priors import Bounds
 
 START = 100 * SECOND

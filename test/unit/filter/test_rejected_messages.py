@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.base.kinematics import Pose
-from rbx1_nav.filter.inputs import MAX_NUMBER, Imu, Odom, RejectedMessage, check_imu, check_odom
+from rbx1_nav.filter.input_checks import MAX_NUMBER, Imu, Odom, RejectedMessage, check_imu, check_odom
 from sample_robot import STEP, Robot
 
 # the fields of an Odometry message in an Odom

@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.base.kinematics import ORIGIN, Pose
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.filter.inputs import Odom
+from rbx1_nav.filter.input_checks import Odom
 from sample_priors import IDEAL
 from sample_robot import STEP, Robot, exact
 from test_contradictions import turn_with_wheels

@@ -7,7 +7,7 @@ import pytest
 from rbx1_nav.base.kinematics import ORIGIN, arc
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
-from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.input_checks import Imu, Odom
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 
 ODOM_STEP, IMU_STEP = SECOND // 25, SECOND // 50

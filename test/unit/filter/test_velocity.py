@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.base.kinematics import ORIGIN
 from rbx1_nav.filter.filter import Filter
-from rbx1_nav.filter.inputs import Odom
+from rbx1_nav.filter.input_checks import Odom
 from rbx1_nav.filter.pose_errors import BIAS, SLIP
 from rbx1_nav.filter.priors import UNKNOWN_FLOOR
 from rbx1_nav.filter.velocity import Motion, velocity

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from rbx1_nav.filter.sensors import Doubts
+from rbx1_nav.filter.sensor_contradictions import Doubts
 
 LOST = 'odom has turned by -0.40 rad more than imu_data since the last rest: '
 

@@ -11,7 +11,7 @@ import pytest
 import rospy
 from sensor_msgs.msg import Imu
 
-from rbx1_nav.filter import filter_status, sensor_inputs
+from rbx1_nav.filter import filter_status, one_sender
 from rbx1_nav.filter.ekf_parameters import read_parameters
 from fake_topics import replace_topics
 
@@ -125,8 +125,8 @@ def fixture_clock(monkeypatch):
         if clock.publishers is None:
             raise ConnectionRefusedError
         return clock.publishers, [], []
-    monkeypatch.setattr(sensor_inputs, 'time', SimpleNamespace(monotonic=lambda: clock.now))
-    monkeypatch.setattr(sensor_inputs, 'call', call)
+    monkeypatch.setattr(one_sender, 'time', SimpleNamespace(monotonic=lambda: clock.now))
+    monkeypatch.setattr(one_sender, 'call', call)
     return clock
 
 

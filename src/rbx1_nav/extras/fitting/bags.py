@@ -14,7 +14,7 @@ from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.messages import yaw_of
 from rbx1_nav.base.units import Array
 from rbx1_nav.extras.fitting.recording import Commands, Rates, Recording, Track, check_recording
-from rbx1_nav.filter.inputs import JUMP_TOLERANCE
+from rbx1_nav.filter.input_checks import JUMP_TOLERANCE
 from rbx1_nav.filter.priors import Bounds
 from rbx1_nav.node.config import ConfigError, show_name
 

@@ -15,7 +15,7 @@ from rbx1_nav.base.units import SECOND, Covariance
 from rbx1_nav.exercise.legs import REST, TRIAL_REST, Leg, Motion, out_and_back, out_and_back_by_odometry
 from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.filter.combined_odometry import CombinedOdometry
-from rbx1_nav.filter.inputs import Imu, Odom
+from rbx1_nav.filter.input_checks import Imu, Odom
 from rbx1_nav.filter.priors import Priors, priors
 from rbx1_nav.simulation.floor import Floor
 from rbx1_nav.simulation.simulated_base import make_base
