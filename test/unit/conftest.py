@@ -6,7 +6,9 @@ import sys
 from hypothesis import HealthCheck, settings
 import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..', '..', 'src'))
+ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..'))
+sys.path.insert(0, os.path.join(ROOT, 'src'))
+os.environ['ROS_PACKAGE_PATH'] = ROOT   # rospkg finds the surfaces in this clone, also where no workspace is sourced
 # the modules that read and follow the Markdown pages
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), '..'))
 
