@@ -17,6 +17,10 @@ class Topic:
     def publish(self, message=None):
         self.sent.append(message)
 
+    def unregister(self):
+        self.callback = None
+    shutdown = unregister
+
 
 def replace_topics(monkeypatch):
     """Let rospy create Topics; returns the latest one of each name."""
