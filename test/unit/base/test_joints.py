@@ -22,6 +22,14 @@ def test_a_joint_reports_the_speed_at_which_it_moves():
     assert joint.position == 2.0 and joint.velocity == pytest.approx(0.3)
 
 
+def test_a_joint_stops_exactly_at_its_goal():
+    joint = Joint('pan', -1.0, 2.0, 0.59)
+    for goal in 0.59, 0.15:     # 0.59 + (0.15 - 0.59) is not 0.15
+        joint.command(goal)
+        joint.advance(1.0)
+        assert joint.position == goal
+
+
 @pytest.mark.parametrize('goal', [nan, inf])
 def test_a_goal_that_is_not_finite_is_rejected(goal):
     joint = Joint('pan', -1.0, 2.0, 0.5)

@@ -34,7 +34,7 @@ def fixture_node(monkeypatch):
                 raise tf2_ros.LookupException()
             return type('Stamped', (), {'transform': LINKS[link]})
     monkeypatch.setattr(tf2_ros, 'Buffer', Buffer)
-    monkeypatch.setattr(tf2_ros, 'TransformListener', lambda _: None)
+    monkeypatch.setattr(tf2_ros, 'TransformListener', lambda buffer: (buffer, 'listens'))
     return node
 
 
@@ -48,6 +48,7 @@ def truth():
 
 def test_the_markers_of_a_robot_that_faces_left(node):
     robot = node.TrueRobot(VISUALS)
+    assert robot.listener == (robot.buffer, 'listens')
     robot.on_truth(truth())
     markers = node.topics['true_robot'].sent[0].markers
     # the transform of the hand is not known yet
