@@ -108,8 +108,8 @@ def test_the_covariance_stays_symmetric_and_positive(path):
 @pytest.mark.parametrize('reported, turn, path', [
     (0.0, 0.01 + 0.002, 0.01), (0.02, 0.02, 0.02), (1e3, 0.084 ** 2 * 4 + 0.066 ** 2 * 2, 0.044 ** 2 * 16)])
 def test_a_reported_variance_counts_between_the_noise_of_the_assumed_floor_and_of_any_floor(reported, turn, path):
-    ekf = Filter(UNKNOWN_FLOOR._replace(heading_noise_turning=0.05, heading_noise_straight=sqrt(0.001),
-                                        slip_straight=0.1, slip_straight_spread=0.0, distance_noise=0.025), Pose(0, 0, 0.6))
+    floor = dict(heading_noise_turning=0.05, heading_noise_straight=sqrt(0.001), distance_noise=0.05 / 2)
+    ekf = Filter(UNKNOWN_FLOOR._replace(**floor, slip_straight=0.1, slip_straight_spread=0.0), Pose(0, 0, 0.6))
     assert ekf.turn(1.0, (-4.0, reported), None, -2.0).variance == pytest.approx(turn)
     ekf.P = [[0.0] * 6 for _ in range(6)]
     ekf.step(1.0, Yaw(0.0, 0.0, False), 0.0, -10.0, 6.0, reported)

@@ -24,10 +24,10 @@ def fixture_node(monkeypatch):
     class Server:
         port = 8085
 
-        def __init__(self, *arguments, **_):
+        def __init__(self, *arguments, teacher_port):
             if node.taken:
                 raise OSError('in use')
-            node.server = arguments
+            node.server, node.teacher_port = arguments, teacher_port
 
         def start(self):
             node.calls.append('serve')
@@ -46,13 +46,15 @@ def test_all_that_is_started_is_stopped(node, monkeypatch, capsys):
     without_master(monkeypatch)
     assert node.main() == 0
     assert node.calls == ['start ', 'serve', 'end', 'stop ', 'close']
+    assert node.teacher_port == 0
     assert node.server[1:] == ({'/socket/': 'connections ', '/socket': 'connections '}, 'localhost', 8080)
     assert 'Open http://localhost:8085/' in capsys.readouterr().out
 
 
 def test_each_robot_of_a_fleet_has_a_socket(node, monkeypatch):
     without_master(monkeypatch, robots=2)
-    assert node.main() == 0
+    monkeypatch.setenv(node.TEACHER_VARIABLE, '8090')
+    assert node.main() == 0 and node.teacher_port == 8090
     assert node.server[1] == {'/socket/robot1': 'connections robot1', '/socket/robot2': 'connections robot2',
                               '/socket': 'connections robot1'}
     assert sorted(node.calls) == ['close', 'end', 'serve', 'start robot1', 'start robot2', 'stop robot1', 'stop robot2']
