@@ -3,9 +3,6 @@ from __future__ import annotations
 
 from rbx1_nav.base.units import SECOND
 
-CLOCK_STEP = 0.02   # s, default step of a simulated clock
-NODE_TIMEOUT = 5.0      # s of wall time that a simulated clock waits for a node
-
 
 class Schedule:
     """Determines when a periodic task is due, even on a clock that jumps."""

@@ -31,7 +31,6 @@ def without_master(monkeypatch, **params):
         monkeypatch.setattr(private_parameters, '_values', read(parameters, Section(params)))
         check(params)
         log.append(('started', name))
-    monkeypatch.setenv('ROS_PACKAGE_PATH', ROOT)
     monkeypatch.setattr(life, 'init_node', init_node)
     monkeypatch.setattr(rospy.rostime, '_rostime_initialized', True)
     for level in 'info', 'warn', 'err', 'fatal':
@@ -41,7 +40,6 @@ def without_master(monkeypatch, **params):
 
 def run_program(monkeypatch, folder, module, *arguments):
     """Run main() with a command line; returns (exit status, stdout, stderr), which are files in a folder."""
-    monkeypatch.setenv('ROS_PACKAGE_PATH', ROOT)
     monkeypatch.setattr(sys, 'argv', [module.__file__, *arguments])
     with open(str(folder / 'out'), 'w', 1) as out, open(str(folder / 'err'), 'w', 1) as err:
         with redirect_stdout(out), redirect_stderr(err):

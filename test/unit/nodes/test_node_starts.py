@@ -19,7 +19,6 @@ def test_a_file_that_is_started(monkeypatch, capsys, path):
 
     def interrupted(*_, **__):
         raise rospy.ROSInterruptException()
-    monkeypatch.setenv('ROS_PACKAGE_PATH', ROOT)
     monkeypatch.setattr(sys, 'argv', [path, '--help'])
     monkeypatch.setattr(life, 'run', lambda main: calls.append(main.__name__))
     monkeypatch.setattr(rospy, 'loginfo', calls.append)

@@ -22,10 +22,10 @@ import rospy
 from rospy.exceptions import TransportException
 from rospy.msg import serialize_message
 
-from rbx1_nav.base.schedule import NODE_TIMEOUT
 from rbx1_nav.extras.lockstep.processes import Process, find_pollers, polling, still_polling
 from rbx1_nav.extras.lockstep.watched_nodes import Watch
 
+NODE_TIMEOUT = 5.0      # s of wall time that the clock waits for a node
 ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
 LONGEST_LOOK = 0.1  # s: if it takes longer from one check to the next, the base itself was suspended

@@ -13,7 +13,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from rospy.impl import simtime
 
 from rbx1_nav.base.clocks import Clock
-from rbx1_nav.base.schedule import CLOCK_STEP, Schedule
+from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.lockstep.lockstep import Lockstep
 from rbx1_nav.extras.lockstep.watched_nodes import Watch
@@ -30,7 +30,7 @@ CLOCK_PERIOD = 0.7  # s of wall time between two searches for another clock
 PARAMETERS = (
     number('real_time_factor', None, '', 'highest speed of simulated time, relative to real time', 0.01, 1000,
            shown='real time', note='see [Simulated time](reference.md#simulated-time)'),
-    number('clock_step', CLOCK_STEP, 's', 'step of simulated time', 0.001, 0.1, 'a time'),
+    number('clock_step', 0.02, 's', 'step of simulated time', 0.001, 0.1, 'a time'),
     flag('strict', False, 'whether this node exits if a driver is not in step with simulated time'))
 
 

@@ -13,7 +13,7 @@ ROOT = os.path.normpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'
 SURFACES = os.path.join(ROOT, 'config', 'surfaces')
 NODE = os.path.join(ROOT, 'nodes', 'fit_surface.py')
 PATHS = [os.path.join(ROOT, 'src')] + [path for path in sys.path if path]
-ENVIRONMENT = dict(os.environ, ROS_PACKAGE_PATH=ROOT, PYTHONPATH=os.pathsep.join(PATHS))
+ENVIRONMENT = dict(os.environ, PYTHONPATH=os.pathsep.join(PATHS))
 
 
 def fit(folder, *arguments):

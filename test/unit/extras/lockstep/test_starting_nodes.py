@@ -57,13 +57,13 @@ def test_a_driver_whose_main_thread_spins_is_not_waited_for(world, monkeypatch):
 
 def test_a_node_that_wakes_after_the_check_is_still_waited_for(world, monkeypatch):
     def check(*checked):
-        found = awake(*checked)
+        found = find_awake(*checked)
         if not found:
             node.socket.send(b'\n')
             wait_for(lambda: not world.watch.processes['/node'].naps())
         return found
-    awake = watched_nodes.awake
-    monkeypatch.setattr(watched_nodes, 'awake', check)
+    find_awake = watched_nodes.find_awake
+    monkeypatch.setattr(watched_nodes, 'find_awake', check)
     monkeypatch.setattr(watched_nodes, 'START_SLEEP', 1000.0)
     world.watch.find_sources()
     node = world.connect('/node', 'import select; select.select([s], [], []); sys.stdin.read()')
@@ -198,7 +198,7 @@ def test_a_subscriber_that_comes_during_a_check_is_greeted_after_the_next_one(wo
     def check(*_):
         if not greeted:
             world.watch.greetings[:] = [(False, lambda: greeted.append('/new'))]
-    monkeypatch.setattr(watched_nodes, 'awake', check)
+    monkeypatch.setattr(watched_nodes, 'find_awake', check)
     assert world.watch.waits_for() is None and not greeted
     # it has connected after the update
     old, new = world.connect('/old'), world.connect('/new')
