@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from rbx1_nav.base.model_problems import Published, find_prefix_problem, find_problems
+from rbx1_nav.base.model_check import Published, find_prefix_problem, find_problems
 from rbx1_nav.base.robot_parameters import load_robot, read_robot
 from rbx1_nav.base.urdf import read_tree
 
