@@ -56,14 +56,6 @@ class TestFleet(support.Case):
         self.assertEqual(removed.wait(), 1, removed.output)
         self.assertIn('/robot4/cmd_vel', removed.output)
 
-    def test_requests_that_are_refused(self):
-        for service, name, text in (('add', 'robot1', 'this robot exists'), ('add', '1', 'the name of a robot'),
-                                    ('add', 'robot9', '/robot9/arbotix: no parameters'),
-                                    ('remove', 'robot9', 'robot9: expected one of robot1, ')):
-            success, message = self.request(service, name)
-            self.assertFalse(success)
-            self.assertIn(text, message)
-
     def test_a_script_in_the_wrong_namespace_names_the_robots(self):
         driver = self.drive('', '_wait_timeout:=3')
         self.assertEqual(driver.wait(), 1, driver.output)

@@ -33,12 +33,6 @@ class TestUsage(support.Case):
             self.assertEqual(process.lines[-1], '%s: error: 0.1: unknown argument: expected _parameter:=value or '
                                                 'topic:=new_topic' % name)
 
-    def test_what_a_launch_file_passes_on(self):
-        for arguments, text in ((('maybe', '/arbotix'), "simulated_time: 'maybe': expected true or false"),
-                                (('true', '/a/b/arbotix'), "robot: 'a/b': expected a name of letters")):
-            status, process = self.run_to_its_end('clock_mode.py', *arguments)
-            self.assertEqual((status, process.output[:len(text)]), (2, text))
-
 
 if __name__ == '__main__':
     support.main(TestUsage)

@@ -62,4 +62,8 @@ def test_a_port_that_is_taken_is_named():
         port = server.getsockname()[1]
         with pytest.raises(SystemExit, match=f'address localhost, port {port}: '):
             MODULE.check_ports([], 'localhost', port)
+    with pytest.raises(SystemExit, match='address 192.0.2.1, port .*: expected an address of this machine'):
+        MODULE.check_ports([], '192.0.2.1', port)
     MODULE.check_ports([], 'localhost', port)
+    with pytest.raises(SystemExit, match='address 192.0.2.1, port .*: expected an address of this machine'):
+        MODULE.check_ports([], '192.0.2.1', port)
