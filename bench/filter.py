@@ -42,7 +42,7 @@ def run(task):
             if prior:
                 pose = snapshot.estimate
             else:
-                feed(filters[name], messages)
+                feed(filters[name], messages.imu, odom)
                 pose = filters[name].pose
             follower.compare(pose, snapshot.truth)
 

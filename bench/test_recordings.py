@@ -29,7 +29,7 @@ def fixture_recording():
         found.truth[odom.stamp] = tuple(snapshot.truth)
         if odom.stamp < START:
             return
-        feed(combined, messages)
+        feed(combined, messages.imu, messages.odom)
         if odom.stamp % (SECOND // 10) == 0:
             estimate = combined.estimate
             found.combined.append((estimate.stamp, tuple(estimate.pose), estimate.covariance[2][2]))

@@ -49,8 +49,9 @@ class OdometryErrors(NamedTuple):
 
     def variances(self, distance: float, angle: float) -> tuple[float, float]:
         """Return the variances of the length (m^2) and the angle (rad^2) of a travel (m, rad) in either direction."""
-        distance, angle = abs(distance), abs(angle)
-        return self.linear ** 2 * distance, self.angular ** 2 * angle + self.heading ** 2 * distance
+        linear, angular, heading = self
+        distance = abs(distance)
+        return linear ** 2 * distance, angular ** 2 * abs(angle) + heading ** 2 * distance
 
 
 class UncertainOdometry:

@@ -154,7 +154,7 @@ class CombinedOdometry:
 
     def _arrive(self, sensor: str, now: int, stamp: int) -> int | None:
         """Check and store a stamp; return the previous stamp, or None."""
-        back = self.arrivals.notice_step_back(now)
+        back = now < self.arrivals.now and self.arrivals.notice_step_back(now)
         if back:
             self.restart(f'The clock jumped back by {back / SECOND:.3f} s')
         return self.arrivals.add(sensor, now, stamp)
@@ -211,11 +211,12 @@ class CombinedOdometry:
 
     def _move(self, ekf: Filter, last: Odom, odom: Odom) -> None:
         """Move the robot from one Odom to the next, as wheels and gyro have measured."""
-        duration = (odom.stamp - last.stamp) / SECOND
-        gyro = self.readings.turn(last.stamp, odom.stamp, self.prior.gyro_measurement_range)
-        dx, dy = odom.pose.x - last.pose.x, odom.pose.y - last.pose.y
-        turned = wrap_angle(odom.pose.yaw - last.pose.yaw)
-        middle = last.pose.yaw + turned / 2     # in the frame of the robot halfway through the turn
+        start, (last_x, last_y, last_yaw), _, _ = last
+        end, (x, y, yaw), linear_variance, angular_variance = odom
+        duration = (end - start) / SECOND
+        gyro = self.readings.turn(start, end, self.prior.gyro_measurement_range)
+        dx, dy, turned = x - last_x, y - last_y, wrap_angle(yaw - last_yaw)
+        middle = last_yaw + turned / 2      # in the frame of the robot halfway through the turn
         c, s = cos(middle), sin(middle)
         forward, left = dx * c + dy * s, dy * c - dx * s
         case, stands = None, gyro is not None and self.standstill.stands(odom.pose, turned)
@@ -233,11 +234,11 @@ class CombinedOdometry:
         else:
             self.standstill.leave(odom.pose, ekf)
         turn = AT_REST if case == STANDSTILL else ekf.turn(
-            duration, (turned, odom.angular_variance * duration ** 2), gyro, forward)
+            duration, (turned, angular_variance * duration ** 2), gyro, forward)
         used = gyro if case == STANDSTILL or turn.by_gyro else None
         self.motion = Motion(duration, forward, left, turned, used, case == CARRIED)
         ekf.step(duration, turn, 0.0 if case == STANDSTILL else turned, forward, left,
-                 odom.linear_variance * duration ** 2)
+                 linear_variance * duration ** 2)
         found = ekf.compare(duration, turned, gyro, forward)
         if found is not None:
             ekf.doubted = found or ekf.doubted

@@ -12,7 +12,6 @@ The covariance P, the variance S of a difference, its derivatives H and the gain
 from __future__ import annotations
 
 from math import pi, radians, sqrt
-from operator import add
 from typing import Tuple
 
 from rbx1_nav.base.kinematics import Pose
@@ -96,10 +95,12 @@ class Filter(PoseErrors):
         if not gyro:
             self.compared = NOTHING
             return None
-        self.compared = tuple(map(add, self.compared, (duration, wheels, gyro[0], forward, gyro[1])))
-        if self.compared[0] < PERIOD - 1e-6:
+        time, turn, measured, path, variance = self.compared
+        self.compared = time, wheels, measured, forward, variance = (
+            time + duration, turn + wheels, measured + gyro[0], path + forward, variance + gyro[1])
+        if time < PERIOD - 1e-6:
             return None
-        (time, wheels, measured, forward, variance), self.compared = self.compared, NOTHING
+        self.compared = NOTHING
         change, self.last_turn, self.contradicts = wheels - self.last_turn, wheels, False
         if abs(wheels) + abs(forward) < LEAST_MOTION:
             return None

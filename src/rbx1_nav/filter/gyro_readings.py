@@ -64,8 +64,8 @@ class Readings:
             self.usually_equal = max(self.usually_equal, self.equal)
             sample = (imu.rate - last.rate) ** 2 / 2 * duration / SECOND
             self.density += (sample - self.density) / min(self.at_rest, 1000)
-        seen = self.at_rest >= ENOUGH * (1 + self.usually_equal)
-        stuck = seen and not at_rest and self.equal > 2 * self.usually_equal + MORE
+        stuck = (not at_rest and self.equal > 2 * self.usually_equal + MORE
+                 and self.at_rest >= ENOUGH * (1 + self.usually_equal))
         usual = self.period or duration
         self.period = usual + (duration - usual) // 16      # a running mean
         if duration > SHORT and not imu.is_mean:

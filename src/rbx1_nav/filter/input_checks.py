@@ -50,12 +50,14 @@ def check(field: str, value: object, good: object, expected: str) -> None:
 
 def check_number(field: str, value: float) -> None:
     """Raise RejectedMessage if a value is not finite, or above MAX_NUMBER."""
-    check(field, value, abs(value) <= MAX_NUMBER, NUMBER)
+    if not abs(value) <= MAX_NUMBER:
+        check(field, value, False, NUMBER)
 
 
 def check_variance(field: str, value: float) -> None:
     """Raise RejectedMessage if a variance is not between MIN_VARIANCE and MAX_VARIANCE."""
-    check(field, value, MIN_VARIANCE <= value <= MAX_VARIANCE, VARIANCE)
+    if not MIN_VARIANCE <= value <= MAX_VARIANCE:
+        check(field, value, False, VARIANCE)
 
 
 def check_odom(odom: Odom) -> None:
@@ -82,6 +84,6 @@ def distance(one: Odom, other: Odom) -> float:
 
 def has_jumped(before: Odom, odom: Odom, limits: Bounds) -> bool:
     """Return whether no robot within its Bounds can have moved from one Odom to another in the time between them."""
-    elapsed = (odom.stamp - before.stamp) / SECOND
-    return (distance(before, odom) > limits.max_speed * elapsed + JUMP_TOLERANCE
-            or abs(wrap_angle(odom.pose.yaw - before.pose.yaw)) > limits.max_turn_rate * elapsed + JUMP_TOLERANCE)
+    elapsed, (x, y, yaw), (last_x, last_y, last_yaw) = (odom.stamp - before.stamp) / SECOND, odom.pose, before.pose
+    return (hypot(x - last_x, y - last_y) > limits.max_speed * elapsed + JUMP_TOLERANCE
+            or abs(wrap_angle(yaw - last_yaw)) > limits.max_turn_rate * elapsed + JUMP_TOLERANCE)

@@ -42,6 +42,7 @@ class PoseErrors:
     def __init__(self, prior: Priors, pose: Pose, first_bias: float) -> None:
         """pose: initial pose; first_bias: 1 sigma of the bias, rad/s."""
         self.prior = prior
+        self.grip = 1 - prior.slip_straight     # distance of the robot / distance of the wheels
         # variances per unit of travel on the assumed floor, and on any floor
         self.noises = [(each.heading_noise_turning ** 2, each.heading_noise_straight ** 2, each.distance_noise ** 2)
                        for each in (prior, UNKNOWN_FLOOR)]
@@ -81,7 +82,7 @@ class PoseErrors:
         """The covariance of x, y (m) and yaw (rad), 3x3."""
         self.flush()
         x, y = self.state.x - self.start.x, self.state.y - self.start.y
-        slip = self.prior.slip_straight_spread / (1 - self.prior.slip_straight)
+        slip = self.prior.slip_straight_spread / self.grip
         errors = (self.error, [self.scale_error * each for each in self.by_scale],
                   [INSTABILITY * each for each in self.by_rest], (slip * x, slip * y, 0.0), self.doubt)
         xx, xy, yy, start_x_yaw, start_y_yaw, yaw = (
@@ -118,15 +119,14 @@ class PoseErrors:
         wheels: the turn (rad) that the wheels report; forward, left: displacement (m) in the robot's frame halfway
         through the turn; reported: its variance, m^2.
         """
-        x, y, yaw = self.state
+        (x, y, yaw), (start_x, start_y, _), grip = self.state, self.start, self.grip
         angle, variance, by_gyro = turn
         middle = yaw + angle / 2
         c, s = cos(middle), sin(middle)
         dx, dy = forward * c - left * s, forward * s + left * c
-        grip = 1 - self.prior.slip_straight
         self.state = Pose(x + grip * dx, y + grip * dy, yaw + angle)
         # the place of the turn, relative to the start
-        px, py = x + grip * dx / 2 - self.start.x, y + grip * dy / 2 - self.start.y
+        px, py = x + grip * dx / 2 - start_x, y + grip * dy / 2 - start_y
         if px * px + py * py > self.reach * self.reach:
             self.reach = hypot(px, py)
         if by_gyro:
@@ -135,7 +135,7 @@ class PoseErrors:
         else:
             _add(self.by_slip, -wheels, px, py)
             _add(self.by_curvature, forward, px, py)
-        x_row, y_row, yaw_row = self.P[:3]      # only the upper triangle
+        x_row, y_row, yaw_row, bias_row, _, _ = self.P      # only the upper triangle
         if forward or left:
             path, ((*_, least), (*_, most)) = abs(forward) + abs(left), self.noises
             length = grip ** 2 * max(least * path, min(reported, most * path))
@@ -150,7 +150,7 @@ class PoseErrors:
             x_row[YAW] += by_x
             y_row[YAW] += by_y
             yaw_row[YAW] += variance
-        self.P[BIAS][BIAS] += self.walk * duration
+        bias_row[BIAS] += self.walk * duration
         self.moving += duration
         self.unused += duration
         if self.unused > PERIOD:    # before the bias has walked far

@@ -66,11 +66,11 @@ class Arrivals:
         # a pause of both sensors counts only partly: the process may have been asleep, and then it processes all
         # messages of one sensor before the messages of the other
         clock = self.clock() if self.clock else now
-        self.time += min(max(0, clock - self.last_clock), self.timeout // 4)
+        if clock > self.last_clock:
+            self.time += min(clock - self.last_clock, self.timeout // 4)
         self.last_clock, self.last_time[sensor] = clock, self.time
-        other = self.last_stamp[ODOM if sensor == IMU else IMU]
         # not if it is still as late as when it timed out
-        if self.timed_out[sensor] and (sensor == ODOM or (other or 0) - stamp <= MAX_WAIT):
+        if self.timed_out[sensor] and (sensor == ODOM or (self.last_stamp[ODOM] or 0) - stamp <= MAX_WAIT):
             self.timed_out[sensor] = False
             self.warn(f'{sensor} has recovered')
         return before

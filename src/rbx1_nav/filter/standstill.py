@@ -154,5 +154,6 @@ class Standstill:
 
     def _believe_turn(self, ekf: Filter) -> None:
         """Do not doubt any more that the robot was turned."""
-        ekf.doubt_turn(-self.doubted)
-        self.steady = self.doubted = 0.0
+        if self.steady:
+            ekf.doubt_turn(-self.doubted)
+            self.steady = self.doubted = 0.0

@@ -49,6 +49,7 @@ class Gyro:
         self.surface = surface
         self.run = run
         self.noise = random.Random(f'gyro {seed}').gauss
+        self.density = surface.gyro_noise ** 2 / NOISE_RATE     # rad^2/s: variance of the angle per second of readings
         self.reset()
 
     def reset(self) -> None:
@@ -56,6 +57,7 @@ class Gyro:
         self._true_yaw = self._yaw = 0.0
         self._turned = self._time = 0.0         # rad, both directions counted positive, and s since the calibration
         self._rest = self._rest_angle = 0.0     # duration (s) and summed readings (rad) of the calibration
+        self._offset, self._offset_variance = 0.0, self.surface.gyro_bias ** 2      # its result, rad/s and rad^2/s^2
         self._calibrating = True
 
     def read(self, yaw: float, duration: float, at_rest: bool) -> Reading:
@@ -68,15 +70,15 @@ class Gyro:
         if at_rest and self._calibrating:
             self._rest += duration
             self._rest_angle += rate * duration
+            self._offset = self._rest_angle / self._rest
+            self._offset_variance = min(self.density / self._rest, surface.gyro_bias ** 2)
         else:
             self._calibrating = False
+            turn = (rate - self._offset) * duration
+            self._yaw += turn
+            self._turned += abs(turn)
             self._time += duration
-            offset = self._rest_angle / self._rest if self._rest else 0.0
-            self._yaw += (rate - offset) * duration
-            self._turned += abs(rate - offset) * duration
-        density = surface.gyro_noise ** 2 / NOISE_RATE      # rad^2/s: variance of the angle per second of readings
-        bias = min(density / self._rest, surface.gyro_bias ** 2) if self._rest else surface.gyro_bias ** 2
-        variance = (MEASURED + density * self._time + bias * self._time ** 2
+        variance = (MEASURED + self.density * self._time + self._offset_variance * self._time ** 2
                     + (surface.gyro_scale_error * self._turned) ** 2)
         return Reading(rate, max(noise ** 2, MIN_VARIANCE), self._yaw, variance)
 

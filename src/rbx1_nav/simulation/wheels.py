@@ -30,6 +30,7 @@ class IdealWheels:
 
     at_rest = True      # they stay at rest until there is a motion command
     uncertainty = Uncertainty(MEASURED, MEASURED, MEASURED, MEASURED)       # of the odometry
+    speed_variances = uncertainty[2:]
 
     def __init__(self, base_width: float) -> None:
         """base_width: distance between the wheels, m."""
@@ -82,6 +83,8 @@ class Wheels:
         self.turning = Motor(surface.lag, surface.accel_limit, surface.drag_turning)
         self.left = Encoder(surface.ticks_meter)
         self.right = Encoder(surface.ticks_meter)
+        wheel = (1 / surface.ticks_meter) ** 2 / 6 / window ** 2
+        self.rounding = MEASURED + wheel / 2, MEASURED + 2 * wheel / base_width ** 2
         self.reset()
 
     def reset(self) -> None:
@@ -139,9 +142,7 @@ class Wheels:
         """The Uncertainty of the odometry.
 
         The variances of the pose come from the sum of all slip. This is an upper bound, because the return path may
-        cancel slip. The variances of the speeds come from the rounding to whole ticks over the window and from the
-        floor's noise. The rounding has a variance of 1/6 tick^2, because it is the difference of two rounding errors
-        (1/12 each). The speeds of a stationary robot are known.
+        cancel slip.
         """
         surface = self.surface
         yaw = hypot(surface.slip_turning, surface.slip_turning_spread) * self._turned
@@ -150,13 +151,21 @@ class Wheels:
         length, heading = self.noise.variances(self._path, self._turned)
         position = position ** 2 + tick ** 2 + length + heading * self._path ** 2
         yaw = yaw ** 2 + (tick / self.base_width) ** 2 + heading
+        return Uncertainty(position, yaw, *self.speed_variances)
+
+    @property
+    def speed_variances(self) -> tuple[float, float]:
+        """The variances of the speeds that the encoders report, m^2/s^2 and rad^2/s^2.
+
+        They come from the rounding to whole ticks over the window and from the floor's noise. The rounding has a
+        variance of 1/6 tick^2, because it is the difference of two rounding errors (1/12 each). The speeds of a
+        stationary robot are known.
+        """
         if self.at_rest:
-            return Uncertainty(position, yaw, MEASURED, MEASURED)
-        wheel = tick ** 2 / 6 / self.window ** 2
-        linear, angular = self._velocity
-        length, heading = self.noise.variances(linear, angular)
-        return Uncertainty(position, yaw, MEASURED + wheel / 2 + length / self.window,
-                           MEASURED + 2 * wheel / self.base_width ** 2 + heading / self.window)
+            return MEASURED, MEASURED
+        length, heading = self.noise.variances(*self._velocity)
+        linear, angular = self.rounding
+        return linear + length / self.window, angular + heading / self.window
 
 
 AnyWheels = Union[IdealWheels, Wheels]

@@ -53,11 +53,10 @@ class Messages(NamedTuple):
     pose_variances: tuple[float, float, float]      # variances of the pose's x, y (m^2) and yaw (rad^2)
 
 
-def feed(combined: CombinedOdometry, messages: Messages) -> None:
-    """Pass the Messages of a tick to a CombinedOdometry."""
-    now = messages.odom.stamp
-    combined.add_imu(now, messages.imu)
-    combined.add_odom(now, messages.odom)
+def feed(combined: CombinedOdometry, imu: Imu, odom: Odom) -> None:
+    """Pass the messages of a tick to a CombinedOdometry."""
+    combined.add_imu(imu.stamp, imu)
+    combined.add_odom(odom.stamp, odom)
 
 
 Listen = Callable[[Snapshot, Messages], None]
@@ -84,20 +83,23 @@ class Simulation:
         self.now += self.period
         self.base.advance(self.now)
         if self.filter or self.listen:
-            messages = self._messages()
-            if self.filter:
-                feed(self.filter, messages)
-            if self.listen:
-                self.listen(self.snapshot(), messages)
+            self._send()
         if self.path is not None:
             self.path.append(self.snapshot())
 
-    def _messages(self) -> Messages:
-        reading, uncertainty = self.base.read_gyro(), self.base.wheels.uncertainty
+    def _send(self) -> None:
+        """Pass the messages of this tick to the filter and to the listener."""
+        base, now = self.base, self.now
+        reading = base.read_gyro()
         assert reading      # the clock has advanced
-        return Messages(Imu(self.now, reading.rate, reading.rate_variance), (reading.yaw, reading.yaw_variance),
-                        Odom(self.now, self.base.odometry.pose, uncertainty.linear, uncertainty.angular),
-                        (uncertainty.position, uncertainty.position, uncertainty.yaw))
+        imu = Imu(now, reading.rate, reading.rate_variance)
+        odom = Odom(now, base.odometry.pose, *base.wheels.speed_variances)
+        if self.filter:
+            feed(self.filter, imu, odom)
+        if self.listen:
+            position, yaw = base.wheels.uncertainty[:2]
+            self.listen(self.snapshot(), Messages(imu, (reading.yaw, reading.yaw_variance), odom,
+                                                  (position, position, yaw)))
 
     def rest(self, duration: float) -> None:
         """Keep the robot at rest for a duration (s)."""
