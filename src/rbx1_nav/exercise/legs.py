@@ -117,6 +117,7 @@ class Leg(ABC):
         self.speed = speed
         self.min_speed = min(min_speed, speed)
         self.rate = rate
+        self.slow_down = max(SLOW_DOWN, 2 / rate)       # s: never past the goal within two ticks
         self.state = Phase.NEW
         self.turned = 0.0       # rad
         self.nearest = goal     # m or rad
@@ -162,8 +163,8 @@ class Leg(ABC):
         if self.state is Phase.APPROACH and to_go < SLOW_DOWN * self.min_speed:
             self._begin_trial(to_go, travel)
             return 0.0
-        # slow enough to brake in time, and never past the goal within two ticks
-        limit = min(to_go / max(SLOW_DOWN, 2 / self.rate), sqrt(2 * self.deceleration * to_go))
+        # slow enough to brake in time
+        limit = min(to_go / self.slow_down, sqrt(2 * self.deceleration * to_go))
         return min(self.speed, max(self.min_speed, limit))
 
     def _follow(self, pose: Pose) -> None:
@@ -188,8 +189,9 @@ class Leg(ABC):
 
     def _measure_travel(self, to_go: float) -> float:
         """Return the robot's current travel per tick, m or rad."""
-        self.recent.append(to_go)
-        return max(0.0, self.recent[0] - to_go) / max(1, len(self.recent) - 1)
+        recent = self.recent
+        recent.append(to_go)
+        return max(0.0, recent[0] - to_go) / max(1, len(recent) - 1)
 
     def _expected_roll_out(self, travel: float) -> float:
         """Return how far the robot would coast (m or rad): as far as in the trial stop, or less if it is slower now.
@@ -218,7 +220,8 @@ class Straight(Leg):
 
     def done(self) -> float:
         """Return the distance covered in the direction of the initial heading, m."""
-        return ((self.last.x - self.start.x) * cos(self.start.yaw) + (self.last.y - self.start.y) * sin(self.start.yaw))
+        (x, y, yaw), (last_x, last_y, _) = self.start, self.last
+        return (last_x - x) * cos(yaw) + (last_y - y) * sin(yaw)
 
     @staticmethod
     def velocity(speed: float) -> tuple[float, float]:

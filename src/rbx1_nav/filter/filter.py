@@ -115,7 +115,10 @@ class Filter(PoseErrors):
         bias, slip, curvature = self.error[3:]
         H = time, -wheels, forward
         difference = measured - bias * time - wheels * (1 - slip) - curvature * forward
-        known = sum(self.P[3 + i][3 + j] * H[i] * H[j] for i in range(3) for j in range(3))
+        known = 0.0
+        for row, h in zip(self.P[3:], H):
+            for p, other in zip(row[3:], H):
+                known += p * h * other
         least = variance + ROUNDING ** 2 + (SKEW / PERIOD * change) ** 2
         turning, straight, _ = self.noises[1]
         floor = turning * abs(wheels) + straight * abs(forward)

@@ -85,17 +85,16 @@ class Readings:
         # a reported noise that is far larger than at rest is not believed
         max_density = NOISE_FACTOR * max(self.density, MIN_DENSITY) if self.at_rest >= ENOUGH else inf
         angle = variance = 0.0
-        time, good = start, True
-        while self.waiting and time < end:
-            begin, imu, stuck, changed = self.waiting[0]
-            if imu.stamp > time:
-                good = good and begin <= time and abs(imu.rate) < max_rate and not stuck
-                stop = min(imu.stamp, end)
-                part = (stop - time) / SECOND
-                angle += imu.rate * part
-                whole = (imu.stamp - begin) / SECOND
-                variance += (min(imu.variance, max_density / whole) + changed) * part * whole
+        time, good, waiting = start, True, self.waiting
+        while waiting and time < end:
+            begin, (stamp, rate, reported, _), stuck, changed = waiting[0]
+            if stamp > time:
+                good = good and begin <= time and abs(rate) < max_rate and not stuck
+                stop = min(stamp, end)
+                part, whole = (stop - time) / SECOND, (stamp - begin) / SECOND
+                angle += rate * part
+                variance += (min(reported, max_density / whole) + changed) * part * whole
                 time = stop
-            if imu.stamp <= end:
-                self.waiting.popleft()
+            if stamp <= end:
+                waiting.popleft()
         return (angle, variance) if good and time == end and variance else None

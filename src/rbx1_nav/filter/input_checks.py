@@ -62,8 +62,10 @@ def check_variance(field: str, value: float) -> None:
 
 def check_odom(odom: Odom) -> None:
     """Raise RejectedMessage if an Odom cannot be used."""
-    for field, value in zip(POSE_FIELDS, odom.pose):
-        check_number(field, value)
+    x, y, yaw = odom.pose
+    if not (abs(x) <= MAX_NUMBER and abs(y) <= MAX_NUMBER and abs(yaw) <= MAX_NUMBER):
+        for field, value in zip(POSE_FIELDS, odom.pose):
+            check_number(field, value)
 
 
 def check_imu(imu: Imu) -> None:

@@ -170,8 +170,9 @@ class PoseErrors:
                 for i, part in enumerate(parts):        # P = F P F', first the rows, then the columns
                     P[i] = [value + part * other for value, other in zip(P[i], P[cause])]
                 for row in P:
+                    by_cause = row[cause]
                     for j, part in enumerate(parts):
-                        row[j] += part * row[cause]
+                        row[j] += part * by_cause
         self._begin()
 
     def doubt_bias(self, rate: float) -> None:
@@ -210,11 +211,12 @@ class PoseErrors:
     def update(self, H: tuple[float, ...], difference: float, variance: float) -> None:
         """Update the errors with a measurement of H (derivatives with respect to bias, slip, curvature) that differs
         from what is expected."""
-        PH = [sum(p * h for p, h in zip(row[3:], H)) for row in self.P]
-        S = variance + sum(p * h for p, h in zip(PH[3:], H))
-        for i, row in enumerate(self.P):
-            self.error[i] += PH[i] / S * difference
-            self.P[i] = [value - PH[i] * PH[j] / S for j, value in enumerate(row)]
+        by_bias, by_slip, by_curvature = H
+        PH = [row[BIAS] * by_bias + row[SLIP] * by_slip + row[CURVATURE] * by_curvature for row in self.P]
+        S = variance + (PH[BIAS] * by_bias + PH[SLIP] * by_slip + PH[CURVATURE] * by_curvature)
+        for i, one in enumerate(PH):
+            self.error[i] += one / S * difference
+            self.P[i] = [value - one * other / S for value, other in zip(self.P[i], PH)]
 
 
 def _add(errors: List[float], angle: float, x: float, y: float) -> None:
