@@ -12,7 +12,7 @@ from typing import NamedTuple
 from rbx1_nav.node.config import ConfigError, Section, YamlValue, load_yaml, show, show_name, suggestion
 
 CELL_TURNED = 0.25      # rad } path over which the noise of a floor is constant, determined from recordings of five
-CELL_TRAVELLED = 0.1    # m   } Creates: docs/real_runs.md
+CELL_TRAVELLED = 0.1    # m   } Creates: docs/your_floor.md
 
 
 class Key(NamedTuple):

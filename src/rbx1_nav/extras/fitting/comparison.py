@@ -17,6 +17,7 @@ ENDS = 500      # number of simulated end poses per run
 LONG = 60.0     # s: longer runs are compared in parts, each of which starts at the true pose
 PART = 20.0     # s: length of a part
 MAX_SHOWN = 12  # number of runs or parts
+PATHS = 10      # number of simulated paths shown per run
 
 
 def simulate_paths(surface: Surface, prediction: Prediction, index: int, count: int,
@@ -56,7 +57,7 @@ class Comparison(NamedTuple):
 
     recorded: Array | None      # x and y (m) of the recorded path
     is_truth: bool      # whether the recorded path is the truth and not odometry
-    simulated: Array    # x and y (m) of one path with the same commands
+    simulated: Array    # (PATHS, 2, steps): x and y (m) of paths with the same commands
     ends: Array         # (ENDS, 3): simulated end poses: x, y (m) and yaw (rad)
     end: Array | None   # true end pose
 
@@ -82,7 +83,7 @@ def compare(surface: Surface, recordings: Sequence[Recording], base_width: float
 def compare_part(part: tuple[int, Surface, Recording, float, float | None, float | None]) -> Comparison:
     number, surface, recording, base_width, start, end = part
     run, prediction = predict(surface, recording, base_width, start, end)
-    # each run shows a different path, but equal commands have equal regions
+    # each run shows different paths, but equal commands have equal regions
     paths = simulate_paths(surface, prediction, 0, ENDS, numpy.random.default_rng(1))
     track = recording.truth or recording.odometry
     path: Array | None = None
@@ -96,7 +97,8 @@ def compare_part(part: tuple[int, Surface, Recording, float, float | None, float
     elif recording.end:
         true = numpy.array(recording.end)
     return Comparison(None if path is None else path[:2], bool(recording.truth),
-                      numpy.concatenate([numpy.zeros((2, 1)), paths[number, :2]], axis=1), paths[:, :, -1], true)
+                      numpy.pad(paths[PATHS * number:PATHS * (number + 1), :2], ((0, 0), (0, 0), (1, 0))),
+                      paths[:, :, -1], true)
 
 
 def choose(recordings: Sequence[Recording]) -> Iterator[tuple[Recording, float | None, float | None]]:

@@ -15,6 +15,7 @@ from rbx1_nav.base.surfaces import KEYS, Surface
 from rbx1_nav.base.units import Array
 from rbx1_nav.extras.fitting.prediction import Covariance, Prediction, with_values
 from rbx1_nav.extras.fitting.run import PreparedRun, Windows
+from rbx1_nav.simulation.floor_noise import KINDS
 
 # key: step of a numerical derivative; standard error above which the recordings do not determine the value
 MEANS = {'delay': (0.01, 0.1), 'lag': (0.01, 0.1), 'slip_straight': (1e-3, 0.05), 'slip_turning': (1e-3, 0.05),
@@ -116,6 +117,15 @@ class Fitter:
 
         return cost
 
+    def excess(self, surface: Surface, key: str) -> float:
+        """Return the excess kurtosis of the errors of the end poses that a noise or a spread causes: 3 for the Laplace
+        distribution of a cell, 3 / n for n cells, and 0 for a spread, whose distribution is normal."""
+        if key not in KINDS:
+            return 0.0
+        _, path, cell = KINDS[key]
+        paths = numpy.concatenate([each.paths()[path].sum(axis=1) for each in self.predictions(surface)])
+        return 3 * float(numpy.minimum(paths, cell).sum() / max(paths.sum(), cell))
+
     def fit_noise(self, surface: Surface, keys: Sequence[str], means: Sequence[str] = (),
                   prior: Surface | None = None) -> tuple[Array, Array]:
         """Fit keys of NOISES and SPREADS by maximum likelihood. Returns (values, standard errors).
@@ -145,6 +155,7 @@ class Fitter:
         hessian = numpy.stack([(approx_fprime(result.x + step, cost, 1e-4) - approx_fprime(result.x - step, cost, 1e-4))
                                / 0.1 for step in steps])
         variances = numpy.diag(numpy.linalg.pinv((hessian + hessian.T) / 2))[:count].clip(0)
+        variances *= [1 + self.excess(surface, key) / 2 for key in keys]    # as for the variance of a sample
         values = numpy.exp(result.x[:count])
         # with a prior, the upward error, which is larger than the downward error
         errors = values * (numpy.expm1(numpy.sqrt(variances)) if prior else numpy.sqrt(variances))

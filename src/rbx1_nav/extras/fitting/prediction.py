@@ -37,6 +37,7 @@ class Prediction:
 
     def __init__(self, surface: Surface, steps: Steps, windows: Windows) -> None:
         """steps: Steps of the whole recording."""
+        self.tick = 1 / surface.ticks_meter     # m
         part = windows.first[:, None] + numpy.arange(windows.length)
         self.straight: Array = steps.straight[part]     # (n, m)
         self.turn: Array = steps.turn[part]     # (n, m)
@@ -72,7 +73,9 @@ class Prediction:
 
     def paths(self) -> dict[str, Array]:
         """Return the (n, m) lengths of the steps of both kinds of path of a NoiseKind."""
-        return {'travelled': numpy.abs(self.straight), 'turned': numpy.abs(self.turn)}
+        travelled = numpy.abs(self.straight)
+        # encoders that round to ticks report a path even during a turn on the spot, but the floor adds no noise to it
+        return {'travelled': numpy.where(travelled > self.tick, travelled, 0.0), 'turned': numpy.abs(self.turn)}
 
 
 class Covariance:

@@ -188,15 +188,15 @@ def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
             recorded.plot(*each.recorded, color=color, linestyle=STYLES[color], linewidth=1, alpha=0.7,
                           label=None if number else 'truth' if each.is_truth else 'odometry')
         if each.end is not None:
-            for axes in (recorded, ends):
+            for axes in (recorded, simulated, ends):
                 axes.plot(*each.end[:2], 's', color='black', markerfacecolor='white', markersize=6, zorder=5,
                           label=None if number else 'end pose, measured')
-        simulated.plot(*each.simulated, color=SIMULATED, linewidth=1, alpha=0.7, label=None if number else 'simulated')
-        simulated.plot(*each.simulated[:, -1], 'o', color='black', markerfacecolor='white', markersize=5, zorder=5,
-                       label=None if number else 'end pose, simulated')
+        for index, path in enumerate(each.simulated):
+            simulated.plot(*path, color=SIMULATED, linewidth=0.8, alpha=0.5,
+                           label=None if number or index else 'simulated')
         if not any(alike(each, other) for other in comparisons[:number]):
             draw_regions(ends, each.ends[:, :2], label=not number)
-    extent = square([path.T for each in comparisons for path in (each.recorded, each.simulated) if path is not None],
+    extent = square([path.T for each in comparisons for path in (each.recorded, *each.simulated) if path is not None],
                     0.1, 0.5 + MARGIN)
     for axes in (recorded, simulated):      # the same part of the floor
         axes.set(xlim=extent[:2], ylim=extent[2:], aspect='equal')

@@ -6,7 +6,7 @@ from rbx1_nav.extras.fitting.comparison import simulate_paths
 from rbx1_nav.extras.fitting.floor_fit import MEANS, Fitter
 from rbx1_nav.extras.fitting.prediction import Covariance, Prediction
 from rbx1_nav.extras.fitting.run import PreparedRun, Windows
-from sample_runs import EXERCISE, FLOOR, FORWARD, REST, record
+from sample_runs import EXERCISE, FLOOR, FORWARD, LEFT, REST, record
 
 QUIET = 1e-4, 1e-4, 1e-4    # m, m, rad
 
@@ -29,3 +29,20 @@ def test_what_the_runs_do_not_tell_has_a_large_standard_error():
                                                                                         'slip_turning'])
     assert covariance[0][0] ** 0.5 < MEANS['slip_straight'][1]
     assert covariance[1][1] ** 0.5 > MEANS['slip_turning'][1]
+
+
+def test_rounding_in_a_turn_is_no_path():
+    run = PreparedRun(record((REST, FORWARD, REST, LEFT, REST)), 0.26, start=8.0)       # from the turn on
+    prediction = Prediction(FLOOR, run.steps(FLOOR), Windows(numpy.array([0]), len(run.times) - 1, numpy.zeros((1, 3))))
+    assert numpy.abs(prediction.straight).sum() > 5 / FLOOR.ticks_meter     # both encoders round
+    assert prediction.paths()['travelled'].sum() == 0.0
+
+
+@pytest.mark.parametrize('window, excess', [(4.0, 3 / 8), (1.0, 3 / 2), (0.25, 3)])
+def test_the_errors_of_a_few_cells_have_an_excess_kurtosis(window, excess):
+    """Of windows at 0.2 m/s: 3 divided by the number of cells of 0.1 m, at least 1."""
+    run = PreparedRun(record((REST, (0.2, 0.0, 800), REST))._replace(truth=None), 0.26, 3.0, 17.0)
+    first = numpy.arange(0, 240, round(window / 0.05))
+    fitter = Fitter([run], [Windows(first, round(window / 0.05), numpy.zeros((len(first), 3)))], QUIET)
+    assert fitter.excess(FLOOR, 'distance_noise') == pytest.approx(excess, rel=0.1)
+    assert fitter.excess(FLOOR, 'slip_straight_spread') == 0.0
