@@ -174,7 +174,7 @@ class CombinedOdometry:
         """Return whether the gyro has reported up to the first pending odometry, or there is no need to wait for it."""
         (arrival, first), (_, last) = self.pending[0], self.pending[-1]
         reported = self.arrivals.last_stamp[IMU]
-        if not self.gyro_used or self.timed_out[IMU] or (reported is not None and reported >= first.stamp):
+        if (reported is not None and reported >= first.stamp) or not self.gyro_used or self.timed_out[IMU]:
             return True
         if self.arrivals.time - arrival > MAX_WAIT:
             self.arrivals.set_timed_out(IMU, f'its messages arrive more than {MAX_WAIT / SECOND:g} s late')
