@@ -18,6 +18,7 @@ from rbx1_nav.extras.fitting.floor_fit import Fitter, fit_floor
 from rbx1_nav.extras.fitting.prediction import SPREADS, Prediction
 from rbx1_nav.extras.fitting.recording import CAMERAS, COMMANDS, read_robot, truth_file
 from rbx1_nav.extras.fitting.run import PreparedRun, Windows
+from rbx1_nav.extras.fitting.surface_fit import WholeFit
 from rbx1_nav.simulation.floor_noise import NOISES
 
 BASE_WIDTH = 0.26       # m, of a Create in these files
@@ -178,15 +179,27 @@ def leave_out(first, second, judgements):
         print(f"{key:24} {'  '.join(texts)}", flush=True)
 
 
+def leave_robots_out(recordings):
+    """Print how well the surface that fit_surface.py fits to the other robots predicts each robot."""
+    for recording in recordings:
+        others = [each for each in recordings if each is not recording]
+        surface = WholeFit(others, BASE_WIDTH, starting_surface(delay=0.1)).run().surface
+        inside = Judgement([PreparedRun(recording, BASE_WIDTH)], surface, END_LENGTH).inside
+        print('%s, from the other robots: of %d end poses after %d s, %.0f %% inside 50 %%, %.0f %% inside 90 %%' % (
+            recording.name, len(inside), END_LENGTH, 100 * (inside < 0.5).mean(), 100 * (inside < 0.9).mean()),
+            flush=True)
+
+
 def main():
     """Fit, evaluate, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--data', required=True, metavar='DIR', help='folder of files such as D6R1_Odometry.dat')
     parser.add_argument('--set', type=int, default=6, metavar='N', help='number of the set (default 6)')
-    parser.add_argument('--leave-out', action='store_true', help='also fit without each parameter (takes minutes)')
+    parser.add_argument('--leave-out', action='store_true', help='also fit without each parameter and without each robot (takes half an hour)')
     parser.add_argument('--plot', metavar='DIR', help='write %s and %s to this folder' % PICTURES)
     args = parser.parse_args()
-    first, second = halves(read_set(args.data, args.set))
+    recordings = read_set(args.data, args.set)
+    first, second = halves(recordings)
     surface, errors = fit(first, MOTIONS, NOISES)
     print('Fitted to the first halves of set %d:' % args.set)
     show(surface, errors)
@@ -200,6 +213,7 @@ def main():
     judge('ideal', second, ideal_surface())
     if args.leave_out:
         leave_out(first, second, judgements)
+        leave_robots_out(recordings)
 
 
 if __name__ == '__main__':
