@@ -195,7 +195,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--data', required=True, metavar='DIR', help='folder of files such as D6R1_Odometry.dat')
     parser.add_argument('--set', type=int, default=6, metavar='N', help='number of the set (default 6)')
-    parser.add_argument('--leave-out', action='store_true', help='also fit without each parameter and without each robot (takes half an hour)')
+    parser.add_argument('--leave-out', action='store_true',
+                        help='also fit without each parameter and without each robot (takes half an hour)')
     parser.add_argument('--plot', metavar='DIR', help='write %s and %s to this folder' % PICTURES)
     args = parser.parse_args()
     recordings = read_set(args.data, args.set)
