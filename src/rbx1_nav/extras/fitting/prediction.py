@@ -37,7 +37,7 @@ class Prediction:
 
     def __init__(self, surface: Surface, steps: Steps, windows: Windows) -> None:
         """steps: Steps of the whole recording."""
-        self.tick = 1 / surface.ticks_meter     # m
+        self.tick = 1 / surface.ticks_meter if steps.rounded else 0.0       # m
         part = windows.first[:, None] + numpy.arange(windows.length)
         self.straight: Array = steps.straight[part]     # (n, m)
         self.turn: Array = steps.turn[part]     # (n, m)

@@ -20,10 +20,11 @@ MOTORS = ('delay', 'lag', 'accel_limit', 'drag_straight', 'drag_turning')
 
 
 class Steps(NamedTuple):
-    """The wheel travel in each step, as measured by the encoders."""
+    """The wheel travel in each step."""
 
     straight: Array     # m
     turn: Array         # rad
+    rounded: bool = False   # whether encoders have rounded it to whole ticks
 
 
 def grid(start: float, end: float) -> Array:
@@ -59,7 +60,7 @@ def reported_travel(odometry: Track, times: Array) -> Steps:
     turn = numpy.diff(yaw)
     middle = yaw[:-1] + turn / 2
     chord = numpy.diff(x) * numpy.cos(middle) + numpy.diff(y) * numpy.sin(middle)
-    return Steps(chord / numpy.sinc(turn / 2 / numpy.pi), turn)      # the inverse of Odometry.move()
+    return Steps(chord / numpy.sinc(turn / 2 / numpy.pi), turn, rounded=True)      # the inverse of Odometry.move()
 
 
 class Windows(NamedTuple):
