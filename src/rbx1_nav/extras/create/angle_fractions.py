@@ -5,8 +5,9 @@ According to the specification, each reading continues where the last one stoppe
 a third of the turn. The angle is therefore read rarely, and the heading follows the commands in between, unless the
 robot is known to keep fractions.
 
-A calibration shows which kind of robot this is: in a slow turn, the angle is read at each update. A robot that keeps
-fractions reports the turn that was commanded, one that drops them next to nothing.
+A calibration shows which kind of robot this is: in a slow turn, the angle is read rarely for 45 degrees, then at each
+update for 45 degrees. A robot that keeps fractions reports as much both times, one that drops them next to nothing at
+each update. On carpet, both may turn by less than was commanded.
 """
 from __future__ import annotations
 
@@ -30,9 +31,10 @@ MAX_CORRECTION = 120.0  # degrees/s: a filter would mistake a large jump of the 
 GAP = 0.3               # s without a reading after which the angle is read
 UNSURE = 0.1            # 1 sigma of a commanded turn that was not read, as a part of it
 UNCERTAIN = 1.0         # degrees: a lost turn of this size does not show in the next reading
-ENOUGH = 160.0          # degrees that the test needs
-SLOW = 0.6              # degrees between two readings of the test: a robot that drops fractions reports 0
-SAME = 0.5              # part of the commanded turn below which the robot drops fractions
+ENOUGH = 80.0           # degrees of each kind of reading that the test needs
+SLOW = 0.6              # degrees between two frequent readings of the test: a robot that drops fractions reports 0
+FOLLOWS = 0.25          # part of the commanded turn below which the robot hardly turns, so that the test shows nothing
+SAME = 0.5              # ratio of both turns of the test below which the robot drops fractions
 
 
 class CountedTurn(NamedTuple):
@@ -63,14 +65,21 @@ class Fractions:
         self.turn = self.time = 0.0             # commanded turn and time (s) since the last reading of the angle
         self.lost = 0.0                         # the part of `turn` before a lost reply
         self._owed = 0.0                        # correction of the commanded turn that was not returned yet
-        self._commanded = self._counted = 0.0   # absolute turns of the test: commanded, and read from the robot
+        # absolute turns of the test, with rare and with frequent readings: commanded, and read from the robot
+        self._commanded, self._counted = [0.0, 0.0], [0.0, 0.0]
 
     @property
     def known(self) -> str:
         """What is known of the robot: its kind, or the result of the test."""
-        if self.kind != TEST or self._commanded < ENOUGH:
+        if self.kind != TEST or min(self._commanded) < ENOUGH:
             return self.kind
-        return MEASURED + (KEPT if self._counted > SAME * self._commanded else LOST)
+        rare, frequent = (counted / commanded for counted, commanded in zip(self._counted, self._commanded))
+        return TEST if rare < FOLLOWS else MEASURED + (KEPT if frequent > SAME * rare else LOST)
+
+    @property
+    def _is_frequent(self) -> bool:
+        """Whether the test now reads the angle at each update."""
+        return self.kind == TEST and sum(self._commanded) // COARSE_ANGLE % 2 == 1
 
     @property
     def unread(self) -> float:
@@ -79,7 +88,7 @@ class Fractions:
 
     def is_due(self, turn: float, time: float) -> bool:
         """Return whether to read the angle now. turn, time: commanded turn and time (s) since the last update."""
-        if self.kind in (KEPT, TEST) or time > GAP:
+        if self.kind == KEPT or time > GAP or self._is_frequent:
             return True
         factor = 1 + VARIATION * (self._count * GOLDEN % 1)
         return abs(self.turn + turn) >= factor * self._angle or (not turn and self.time + time >= factor * COARSE_TIME)
@@ -110,10 +119,12 @@ class Fractions:
         """Return the CountedTurn since the last reading."""
         self._count += 1
         if self.kind == TEST:
-            if abs(self.turn) <= SLOW:
-                self._commanded += abs(self.turn)
-                self._counted += abs(angle)
-            return CountedTurn(self.turn, (UNSURE * self.turn) ** 2)    # the reading may have lost most of the turn
+            frequent = self._is_frequent
+            if not frequent or abs(self.turn) <= SLOW:
+                self._commanded[frequent] += abs(self.turn)
+                self._counted[frequent] += abs(angle)
+            if frequent:        # the reading may have lost most of the turn
+                return CountedTurn(self.turn, (UNSURE * self.turn) ** 2)
         lost, sigma = lost_part(self.lost, self.turn - self.lost, angle, UNCERTAIN)
         turn = angle + lost + (copysign(self._mean_loss, angle) if angle else 0.0)
         return CountedTurn(turn, sigma ** 2 + (LOSS_VARIANCE if self.kind != KEPT and (angle or self.turn) else 0.0))
