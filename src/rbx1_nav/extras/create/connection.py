@@ -144,7 +144,7 @@ class Contact:
         self.queries = queries
         self.supervisor = supervisor
         self.warn = warn
-        self.line: Link | None = None
+        self._line: Link            # used unless the phase is NO_LINE
         self.found: Found | None = None         # the robot on this line, kept while it does not answer
         self.dropouts = 0           # number of times that the robot stopped answering
         rates = (settings.baud,) if settings.baud else tuple(dict.fromkeys((*RATES, settings.model.baud)))
@@ -156,40 +156,39 @@ class Contact:
 
     def attach(self, now: int, line: Link) -> None:
         """Start using a line that was opened. Sends a stop if the robot is known; otherwise begins the search."""
-        self.line = line
-        if not (self.found and line.is_same):
-            self._begin_search(now, line)
-            return
-        line.confirm(self.found.model)
-        self._begin_asking(now, line)
+        self._line = line
+        if self.found and line.is_same:
+            line.confirm(self.found.model)
+            self._begin_asking(now)
+        else:
+            self._begin_search(now)
 
     def detach(self) -> None:
         """Handle the loss of the line."""
-        self.line = None
         self._lose(Phase.NO_LINE)
         self.queries.give_up()
 
     def tick(self, now: int) -> Found | None:
         """Do what is due. Returns a robot that was just found: use its model, then call start()."""
-        line, phase, heard = self.line, self.sender.phase, self.queries.heard
-        if line is None:
+        phase, heard = self.sender.phase, self.queries.heard
+        if phase is Phase.NO_LINE:
             return None
         if phase is Phase.SEARCHING:
             found = self.search.tick(now)
             self._warn_of_silence()
-            if found and self._accepts(now, line, found):
+            if found and self._accepts(now, found):
                 self._refused, self.found = None, found
-                line.confirm(found.model)
+                self._line.confirm(found.model)
                 return found
         elif phase in ANSWERING:
             if heard is not None and now - heard > SILENCE:
                 self._lose(Phase.SILENT)
                 self.warn('The robot has stopped responding. If it is still moving, stop it by hand: it keeps '
                           'executing its last command')
-                self._begin_asking(now, line)
+                self._begin_asking(now)
         elif phase is Phase.STARTED:
             if now - self._attempt > START_WAIT:
-                self._begin_search(now, line)
+                self._begin_search(now)
         elif now - self._attempt > FIRST_WAIT:
             self.start(now)
         elif now - self._attempt > FLUSH_WAIT and not self._flushed:
@@ -224,10 +223,10 @@ class Contact:
         self.sender.phase = phase
         self.supervisor.forget()
 
-    def _begin_asking(self, now: int, line: Link) -> None:
+    def _begin_asking(self, now: int) -> None:
         self.sender.phase = Phase.SILENT
         self._attempt, self._flushed = now, False
-        line.set_rate(self.baud)        # another process may have changed it
+        self._line.set_rate(self.baud)      # another process may have changed it
         self._stop_and_ask(now)
 
     def _stop_and_ask(self, now: int, stop: bytes = sequences.STOP, kind: Kind = Kind.STOP) -> None:
@@ -243,17 +242,17 @@ class Contact:
 
     # the search
 
-    def _begin_search(self, now: int, line: Link) -> None:
+    def _begin_search(self, now: int) -> None:
         self.sender.phase = Phase.SEARCHING
         self.queries.give_up()
-        self.search.begin(now, line, self.baud, self.expected)
+        self.search.begin(now, self._line, self.baud, self.expected)
 
-    def _accepts(self, now: int, line: Link, found: Found) -> bool:
+    def _accepts(self, now: int, found: Found) -> bool:
         """Return whether this robot may be driven; otherwise, the search continues."""
         if self.expected in (None, found.model):
             return True
         assert self.expected
-        self.search.begin(now, line, found.baud, self.expected)
+        self.search.begin(now, self._line, found.baud, self.expected)
         if found != self._refused:
             self._refused = found
             self.warn(f'A {found.model.name} answers at {found.baud} baud: expected a {self.expected.name}; to drive '

@@ -29,14 +29,17 @@ OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.E
 NO_ANSWER = ERROR, 'The robot does not answer'
 
 
-def charge_ratio(reading: Mapping[str, int]) -> float:
-    """Return the charge as a part of the capacity, which the robot estimates; nan if it is unknown."""
-    return reading['charge'] / reading['capacity'] if reading['capacity'] else nan
+def battery_values(reading: Mapping[str, int]) -> dict[str, float]:
+    """Return the values of the battery in V, A, Ah and degrees C, and the charge as a part of the capacity, which the
+    robot estimates; nan if it is unknown."""
+    values = {name: reading[name] / 1000 for name in ('voltage', 'current', 'charge', 'capacity')}
+    return {**values, 'temperature': reading['temperature'],
+            'charge_ratio': reading['charge'] / reading['capacity'] if reading['capacity'] else nan}
 
 
 def battery_status(reading: Mapping[str, int]) -> tuple[int, str]:
     """Return the level and the summary of the battery's status: its worst problem."""
-    charge, state = charge_ratio(reading), reading['charging_state']
+    charge, state = battery_values(reading)['charge_ratio'], reading['charging_state']
     percent = f'{100 * charge:.0f} %'
     docked = isnan(charge) or reading['charging_sources']
     found = [(OK, CHARGING_STATES[state] if docked else percent)]
@@ -104,11 +107,12 @@ class CreateStatus:
         if level > self.battery_level:
             rospy.logwarn('Battery: %s%s', text, ': charge it soon' if text.startswith('Low') else '')
         self.battery_level = level
+        values = battery_values(reading)
         return fill_status(status, level, text, {
-            'Voltage (V)': reading['voltage'] / 1000,
-            'Current (A)': reading['current'] / 1000,
-            'Charge (Ah)': reading['charge'] / 1000,
-            'Capacity (Ah)': reading['capacity'] / 1000,
+            'Voltage (V)': values['voltage'],
+            'Current (A)': values['current'],
+            'Charge (Ah)': values['charge'],
+            'Capacity (Ah)': values['capacity'],
             'Temperature (degrees C)': reading['temperature'],
             'Charging state': CHARGING_STATES[reading['charging_state']],
             'Charging sources': reading['charging_sources']})

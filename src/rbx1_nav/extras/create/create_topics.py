@@ -20,7 +20,7 @@ from rbx1_nav.base.command_gate import RefusedCommand, RejectedCommand
 from rbx1_nav.base.robot_parameters import Robot
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.extras.create import protocol
-from rbx1_nav.extras.create.create_status import FAULT, HOT, charge_ratio
+from rbx1_nav.extras.create.create_status import FAULT, HOT, battery_values
 from rbx1_nav.extras.create.driver import Driver
 from rbx1_nav.extras.create.lights_and_songs import BUTTONS, LEDS, Lights, define_song, play_song
 from rbx1_nav.extras.create.protocol import CLIFFS, WHEEL_DROPS
@@ -35,13 +35,8 @@ SENSORS = (
     *((name.replace('_', '/', 1), Bool, name, 1) for name in CLIFFS),
     *((name, Empty, 'buttons', bit) for name, bit in BUTTONS.items()), ('ir_omni', UInt16, 'infrared', 0xff))
 Reading = Mapping[str, int]
-BATTERY: tuple[tuple[str, Any, Callable[[Reading], float]], ...] = (
-    ('battery/voltage', Float32, lambda reading: reading['voltage'] / 1000),
-    ('battery/current', Float32, lambda reading: reading['current'] / 1000),
-    ('battery/charge', Float32, lambda reading: reading['charge'] / 1000),
-    ('battery/capacity', Float32, lambda reading: reading['capacity'] / 1000),
-    ('battery/charge_ratio', Float32, charge_ratio),
-    ('battery/temperature', Int16, lambda reading: reading['temperature']))
+# topics below battery/, by their name in battery_values()
+BATTERY = {**dict.fromkeys(('voltage', 'current', 'charge', 'capacity', 'charge_ratio'), Float32), 'temperature': Int16}
 # by charging state, see create_status; trickle charging keeps a full battery full
 POWER_STATUS = (BatteryState.POWER_SUPPLY_STATUS_DISCHARGING, BatteryState.POWER_SUPPLY_STATUS_CHARGING,
                 BatteryState.POWER_SUPPLY_STATUS_CHARGING, BatteryState.POWER_SUPPLY_STATUS_FULL,
@@ -49,11 +44,10 @@ POWER_STATUS = (BatteryState.POWER_SUPPLY_STATUS_DISCHARGING, BatteryState.POWER
 
 
 def battery_state(stamp: rospy.Time, frame: str, reading: Reading) -> BatteryState:
+    values = battery_values(reading)
     state = BatteryState(
-        voltage=reading['voltage'] / 1000, temperature=reading['temperature'], current=reading['current'] / 1000,
-        charge=reading['charge'] / 1000, capacity=reading['capacity'] / 1000, design_capacity=nan,
-        percentage=min(charge_ratio(reading), 1.0), power_supply_status=POWER_STATUS[reading['charging_state']],
-        present=True)
+        percentage=min(values.pop('charge_ratio'), 1.0), power_supply_status=POWER_STATUS[reading['charging_state']],
+        present=True, design_capacity=nan, **values)
     state.header.stamp, state.header.frame_id = stamp, frame
     if reading['charging_sources'] and not reading['charging_state']:
         state.power_supply_status = BatteryState.POWER_SUPPLY_STATUS_NOT_CHARGING
@@ -80,7 +74,8 @@ class CreateTopics:
         self.sensors = [(rospy.Publisher(name, kind, NoDelay(self.greet), queue_size=10), kind, packet, bits)
                         for name, kind, packet, bits in SENSORS]
         self.battery = rospy.Publisher('battery_state', BatteryState, queue_size=10)
-        self.battery_values = [(rospy.Publisher(name, kind, queue_size=10), value) for name, kind, value in BATTERY]
+        self.battery_values = {name: rospy.Publisher(f'battery/{name}', kind, queue_size=10)
+                               for name, kind in BATTERY.items()}
         self.reset_pub = rospy.Publisher('reset_odometry', Empty, queue_size=1)
         rospy.Service('~reset', EmptyService, self.on_reset)
         self.subscribers: list[rospy.Subscriber] = []
@@ -89,17 +84,15 @@ class CreateTopics:
         """Accept orders from now on."""
         if self.subscribers:
             return
-        driver, orders, lights = self.driver, self.driver.orders, self.lights
+        orders, lights = self.driver.orders, self.lights
         for name, kind, order in (
-                ('dock', Empty, lambda now, _: orders.dock(now, driver.reading)),
-                ('undock', Empty, lambda now, _: orders.undock(now, driver.reading)),
+                ('dock', Empty, lambda now, _: orders.dock(now)), ('undock', Empty, lambda now, _: orders.undock(now)),
                 ('define_song', Float32MultiArray,
-                 lambda now, message: orders.send(now, define_song(message.data), driver.reading)),
-                ('play_song', UInt8,
-                 lambda now, message: orders.send(now, play_song(message.data), driver.reading)),
+                 lambda now, message: orders.send(now, define_song(message.data))),
+                ('play_song', UInt8, lambda now, message: orders.send(now, play_song(message.data))),
                 *((name, Bool, self.light(partial(lights.set_led, name))) for name in LEDS),
                 ('power_led', UInt8MultiArray, self.light(lights.set_power)),
-                ('set_ascii', UInt8MultiArray, self.light(lambda data: lights.set_digits(data, driver.model)))):
+                ('set_ascii', UInt8MultiArray, self.light(lambda data: lights.set_digits(data, self.driver.model)))):
             self.subscribers.append(rospy.Subscriber(name, kind, partial(self.on_order, name, order), queue_size=10))
 
     def greet(self, *_: object) -> None:
@@ -110,7 +103,7 @@ class CreateTopics:
     def light(self, change: Callable[[Any], None]) -> Callable[[int, Any], None]:
         """Return the order that changes the lights. change(data): changes self.lights."""
         def order(_: int, message: Any) -> None:
-            self.driver.orders.check(self.driver.reading)
+            self.driver.orders.check()
             change(message.data)
             self.driver.orders.lights = self.lights.commands
         return order
@@ -150,6 +143,7 @@ class CreateTopics:
             self.power = power
             if self.battery.get_num_connections():
                 self.battery.publish(battery_state(stamp, self.frames[0], reading))
-            for publisher, of in self.battery_values:
+            values = battery_values(reading)
+            for name, publisher in self.battery_values.items():
                 if publisher.get_num_connections():
-                    publisher.publish(of(reading))
+                    publisher.publish(values[name])

@@ -34,34 +34,35 @@ class Orders:
         self.info = info
         self.warn = warn
         self.state = ''
+        self.reading: Mapping[str, int] | None = None   # the last one
         self.lights = self._shown = b''     # commands that set the wanted lights, and those that were sent
         self._docked = False        # whether the last reading shows the dock
         self._since = 0             # when the state, or the last request to dock, began
         self._mode: int | None = None       # mode that the robot leaves when it starts to dock; None: unknown
         self._start: float | None = None    # m, position at the first reading after the order to undock
 
-    def check(self, reading: Mapping[str, int] | None) -> Mapping[str, int]:
+    def check(self) -> Mapping[str, int]:
         """Return the last reading, if the robot can follow orders. Raises RefusedCommand."""
         if self.sender.phase in (Phase.LEAVING, Phase.LEFT):
             raise RefusedCommand('the node is shutting down')
         if self.wanted == protocol.PASSIVE:
             raise RefusedCommand('operation_mode: 1: the robot is not driven in passive mode')
-        if not (reading and self.contact.answers):
+        if not (self.reading and self.contact.answers):
             raise RefusedCommand('the robot does not answer')
-        return reading
+        return self.reading
 
-    def send(self, now: int, data: bytes, reading: Mapping[str, int] | None) -> None:
+    def send(self, now: int, data: bytes) -> None:
         """Send a command that does not move the robot. Raises RefusedCommand."""
-        self.check(reading)
+        self.check()
         if not self.sender.may_send(Kind.PANEL):
             raise RefusedCommand(f"the robot is not driven: {self.supervisor.reason or 'it changes its mode'}")
         if self.sender.is_busy(now):
             raise RefusedCommand('the serial line is busy')
         self.sender.send(now, Kind.PANEL, data)
 
-    def dock(self, now: int, reading: Mapping[str, int] | None) -> None:
+    def dock(self, now: int) -> None:
         """Let the robot find its dock. Raises RefusedCommand."""
-        reading = self.check(reading)
+        reading = self.check()
         reasons = causes(reading) or (['the robot is on its dock'] if reading['charging_sources'] & DOCK else [])
         if reasons:
             raise RefusedCommand(', '.join(reasons))
@@ -78,9 +79,9 @@ class Orders:
         self.sender.stop(now, sequences.STOP + sequences.START + protocol.command('dock'), Kind.DOCK)
         self.sender.phase = Phase.DOCKING
 
-    def undock(self, now: int, reading: Mapping[str, int] | None) -> None:
+    def undock(self, now: int) -> None:
         """Drive backward off the dock. Raises RefusedCommand."""
-        reading = self.check(reading)
+        reading = self.check()
         if causes(reading):
             raise RefusedCommand(', '.join(causes(reading)))
         if not reading['charging_sources'] & DOCK:
@@ -123,6 +124,7 @@ class Orders:
     def update(self, now: int, reading: Mapping[str, int], position: float) -> bool:
         """Process a reading, at which the wheels have traveled `position` (m). Returns whether the robot docks, so that
         the driver must leave it alone."""
+        self.reading = reading
         before, self._docked = self._docked, bool(reading['charging_sources'] & DOCK)
         is_sure = before == self._docked    # one reading may be corrupted
         if self.state == DOCKING:

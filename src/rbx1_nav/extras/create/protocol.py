@@ -48,65 +48,64 @@ class Packet(NamedTuple):
     format: str     # struct format character, big-endian
     low: int        # smallest value
     high: int       # largest value
-    unit: str       # '' for a number without a unit, or for bits
 
 
 _Range = Tuple[int, int]
 
-# number, name, format, range on the Create (None: no such packet), range on the Create 2, unit
-_PACKETS: Tuple[Tuple[int, str, str, Optional[_Range], _Range, str], ...] = (
-    (7, 'bumps_and_wheel_drops', 'B', (0, 31), (0, 15), ''),
-    (8, 'wall', 'B', (0, 1), (0, 1), ''),
-    (9, 'cliff_left', 'B', (0, 1), (0, 1), ''),
-    (10, 'cliff_front_left', 'B', (0, 1), (0, 1), ''),
-    (11, 'cliff_front_right', 'B', (0, 1), (0, 1), ''),
-    (12, 'cliff_right', 'B', (0, 1), (0, 1), ''),
-    (13, 'virtual_wall', 'B', (0, 1), (0, 1), ''),
-    (14, 'overcurrents', 'B', (0, 31), (0, 31), ''),
-    (15, 'dirt_detect', 'B', (0, 255), (0, 255), ''),       # unused on the Create
-    (16, 'unused_16', 'B', (0, 255), (0, 255), ''),
-    (17, 'infrared', 'B', (0, 255), (0, 255), ''),
-    (18, 'buttons', 'B', (0, 15), (0, 255), ''),
-    (19, 'distance', 'h', (-32768, 32767), (-32768, 32767), 'mm'),
-    (20, 'angle', 'h', (-32768, 32767), (-32768, 32767), 'degrees'),
-    (21, 'charging_state', 'B', (0, 5), (0, 5), ''),
-    (22, 'voltage', 'H', (0, 65535), (0, 65535), 'mV'),
-    (23, 'current', 'h', (-32768, 32767), (-32768, 32767), 'mA'),
-    (24, 'temperature', 'b', (-128, 127), (-128, 127), 'degrees C'),
-    (25, 'charge', 'H', (0, 65535), (0, 65535), 'mAh'),
-    (26, 'capacity', 'H', (0, 65535), (0, 65535), 'mAh'),
-    (27, 'wall_signal', 'H', (0, 4095), (0, 1023), ''),
-    (28, 'cliff_left_signal', 'H', (0, 4095), (0, 4095), ''),
-    (29, 'cliff_front_left_signal', 'H', (0, 4095), (0, 4095), ''),
-    (30, 'cliff_front_right_signal', 'H', (0, 4095), (0, 4095), ''),
-    (31, 'cliff_right_signal', 'H', (0, 4095), (0, 4095), ''),
-    (32, 'digital_inputs', 'B', (0, 31), (0, 255), ''),     # unused on the Create 2
-    (33, 'analog_input', 'H', (0, 1023), (0, 65535), ''),   # 0 to 5 V; unused on the Create 2
-    (34, 'charging_sources', 'B', (0, 3), (0, 3), ''),
-    (35, 'mode', 'B', (0, 4), (0, 4), ''),      # full mode is 3, but some robots report it as 4
-    (36, 'song_number', 'B', (0, 15), (0, 15), ''),
-    (37, 'song_playing', 'B', (0, 1), (0, 1), ''),
-    (38, 'stream_packets', 'B', (0, 43), (0, 108), ''),
-    (39, 'requested_velocity', 'h', (-500, 500), (-500, 500), 'mm/s'),
-    (40, 'requested_radius', 'h', (-32768, 32767), (-32768, 32767), 'mm'),
-    (41, 'requested_right_velocity', 'h', (-500, 500), (-500, 500), 'mm/s'),
-    (42, 'requested_left_velocity', 'h', (-500, 500), (-500, 500), 'mm/s'),
-    (43, 'left_encoder', 'H', None, (0, 65535), 'counts'),
-    (44, 'right_encoder', 'H', None, (0, 65535), 'counts'),
-    (45, 'light_bumper', 'B', None, (0, 127), ''),
-    (46, 'light_bump_left_signal', 'H', None, (0, 4095), ''),
-    (47, 'light_bump_front_left_signal', 'H', None, (0, 4095), ''),
-    (48, 'light_bump_center_left_signal', 'H', None, (0, 4095), ''),
-    (49, 'light_bump_center_right_signal', 'H', None, (0, 4095), ''),
-    (50, 'light_bump_front_right_signal', 'H', None, (0, 4095), ''),
-    (51, 'light_bump_right_signal', 'H', None, (0, 4095), ''),
-    (52, 'infrared_left', 'B', None, (0, 255), ''),
-    (53, 'infrared_right', 'B', None, (0, 255), ''),
-    (54, 'left_motor_current', 'h', None, (-32768, 32767), 'mA'),
-    (55, 'right_motor_current', 'h', None, (-32768, 32767), 'mA'),
-    (56, 'main_brush_current', 'h', None, (-32768, 32767), 'mA'),
-    (57, 'side_brush_current', 'h', None, (-32768, 32767), 'mA'),
-    (58, 'stasis', 'B', None, (0, 3), ''))
+# number, name, format, range on the Create (None: no such packet), range on the Create 2; as comments, units
+_PACKETS: Tuple[Tuple[int, str, str, Optional[_Range], _Range], ...] = (
+    (7, 'bumps_and_wheel_drops', 'B', (0, 31), (0, 15)),
+    (8, 'wall', 'B', (0, 1), (0, 1)),
+    (9, 'cliff_left', 'B', (0, 1), (0, 1)),
+    (10, 'cliff_front_left', 'B', (0, 1), (0, 1)),
+    (11, 'cliff_front_right', 'B', (0, 1), (0, 1)),
+    (12, 'cliff_right', 'B', (0, 1), (0, 1)),
+    (13, 'virtual_wall', 'B', (0, 1), (0, 1)),
+    (14, 'overcurrents', 'B', (0, 31), (0, 31)),
+    (15, 'dirt_detect', 'B', (0, 255), (0, 255)),       # unused on the Create
+    (16, 'unused_16', 'B', (0, 255), (0, 255)),
+    (17, 'infrared', 'B', (0, 255), (0, 255)),
+    (18, 'buttons', 'B', (0, 15), (0, 255)),
+    (19, 'distance', 'h', (-32768, 32767), (-32768, 32767)),  # mm
+    (20, 'angle', 'h', (-32768, 32767), (-32768, 32767)),  # degrees
+    (21, 'charging_state', 'B', (0, 5), (0, 5)),
+    (22, 'voltage', 'H', (0, 65535), (0, 65535)),  # mV
+    (23, 'current', 'h', (-32768, 32767), (-32768, 32767)),  # mA
+    (24, 'temperature', 'b', (-128, 127), (-128, 127)),  # degrees C
+    (25, 'charge', 'H', (0, 65535), (0, 65535)),  # mAh
+    (26, 'capacity', 'H', (0, 65535), (0, 65535)),  # mAh
+    (27, 'wall_signal', 'H', (0, 4095), (0, 1023)),
+    (28, 'cliff_left_signal', 'H', (0, 4095), (0, 4095)),
+    (29, 'cliff_front_left_signal', 'H', (0, 4095), (0, 4095)),
+    (30, 'cliff_front_right_signal', 'H', (0, 4095), (0, 4095)),
+    (31, 'cliff_right_signal', 'H', (0, 4095), (0, 4095)),
+    (32, 'digital_inputs', 'B', (0, 31), (0, 255)),     # unused on the Create 2
+    (33, 'analog_input', 'H', (0, 1023), (0, 65535)),   # 0 to 5 V; unused on the Create 2
+    (34, 'charging_sources', 'B', (0, 3), (0, 3)),
+    (35, 'mode', 'B', (0, 4), (0, 4)),      # full mode is 3, but some robots report it as 4
+    (36, 'song_number', 'B', (0, 15), (0, 15)),
+    (37, 'song_playing', 'B', (0, 1), (0, 1)),
+    (38, 'stream_packets', 'B', (0, 43), (0, 108)),
+    (39, 'requested_velocity', 'h', (-500, 500), (-500, 500)),  # mm/s
+    (40, 'requested_radius', 'h', (-32768, 32767), (-32768, 32767)),  # mm
+    (41, 'requested_right_velocity', 'h', (-500, 500), (-500, 500)),  # mm/s
+    (42, 'requested_left_velocity', 'h', (-500, 500), (-500, 500)),  # mm/s
+    (43, 'left_encoder', 'H', None, (0, 65535)),  # counts
+    (44, 'right_encoder', 'H', None, (0, 65535)),  # counts
+    (45, 'light_bumper', 'B', None, (0, 127)),
+    (46, 'light_bump_left_signal', 'H', None, (0, 4095)),
+    (47, 'light_bump_front_left_signal', 'H', None, (0, 4095)),
+    (48, 'light_bump_center_left_signal', 'H', None, (0, 4095)),
+    (49, 'light_bump_center_right_signal', 'H', None, (0, 4095)),
+    (50, 'light_bump_front_right_signal', 'H', None, (0, 4095)),
+    (51, 'light_bump_right_signal', 'H', None, (0, 4095)),
+    (52, 'infrared_left', 'B', None, (0, 255)),
+    (53, 'infrared_right', 'B', None, (0, 255)),
+    (54, 'left_motor_current', 'h', None, (-32768, 32767)),  # mA
+    (55, 'right_motor_current', 'h', None, (-32768, 32767)),  # mA
+    (56, 'main_brush_current', 'h', None, (-32768, 32767)),  # mA
+    (57, 'side_brush_current', 'h', None, (-32768, 32767)),  # mA
+    (58, 'stasis', 'B', None, (0, 3)))
 
 # group number: its first and last packet (Create p. 17, Create 2 p. 23)
 _GROUPS = {0: (7, 26), 1: (7, 16), 2: (17, 20), 3: (21, 26), 4: (27, 34), 5: (35, 42), 6: (7, 42)}
@@ -201,14 +200,13 @@ def _packets_of(groups: Mapping[int, tuple[int, int]]) -> dict[int, tuple[int, .
 
 CREATE = Model(
     name='create', baud=57600, wheel_separation=0.26, counts_per_metre=None,
-    packets={number: Packet(number, name, form, *values, unit)
-             for number, name, form, values, _, unit in _PACKETS if values},
+    packets={number: Packet(number, name, form, *values) for number, name, form, values, _ in _PACKETS if values},
     groups=_packets_of(_GROUPS), commands={each.opcode: each for each in _BOTH + _CREATE},
     has_gyro_board=True, reset_time=3.0)    # its boot loader takes 3 s (Create p. 10)
 # 72 mm wheels, 508.8 counts per revolution (Create 2, packet 43)
 CREATE_2 = Model(
     name='create2', baud=115200, wheel_separation=0.235, counts_per_metre=508.8 / (pi * 0.072),
-    packets={number: Packet(number, name, form, *values, unit) for number, name, form, _, values, unit in _PACKETS},
+    packets={number: Packet(number, name, form, *values) for number, name, form, _, values in _PACKETS},
     groups=_packets_of({**_GROUPS, **_GROUPS_2}), commands={each.opcode: each for each in _BOTH + _CREATE_2},
     boot_text=b'bl-start\r\nSTR730\r\nRoomba by iRobot!\r\nr3_robot/tags/release-3.5.4\r\n')
 # a 600 with Wi-Fi (create_robot, issue 64)
@@ -237,11 +235,6 @@ def packets_format(packets: Iterable[Packet]) -> Struct:
     return Struct('>' + ''.join(packet.format for packet in packets))
 
 
-def checksum(data: bytes) -> int:
-    """Return the byte that makes the sum of a frame a multiple of 256. data: the frame without the checksum."""
-    return -sum(data) & 0xff
-
-
 def encode_frame(model: Model, numbers: Iterable[int], values: Mapping[str, int]) -> bytes:
     """Return a frame of the stream. numbers: packets and groups; values: by packet name."""
     data = bytearray()
@@ -250,4 +243,4 @@ def encode_frame(model: Model, numbers: Iterable[int], values: Mapping[str, int]
         data.append(number)
         data += packets_format(packets).pack(*(values[packet.name] for packet in packets))
     frame = bytes((FRAME_HEADER, len(data))) + data
-    return frame + bytes((checksum(frame),))
+    return frame + bytes((-sum(frame) & 0xff,))     # the sum of a frame is a multiple of 256

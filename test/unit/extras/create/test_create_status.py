@@ -70,5 +70,5 @@ def test_a_problem_of_the_robot_is_reported(monkeypatch, attribute, value, expec
 ])
 def test_a_bad_battery_is_reported(changes, level, text):
     reading = {'charging_state': 0, 'charging_sources': 0, 'charge': 3000, 'capacity': 3000, 'temperature': 25,
-               'voltage': 16000}
+               'voltage': 16000, 'current': -300}
     assert battery_status({**reading, **changes}) == (level, text)

@@ -11,7 +11,7 @@ from driven_create import BOTH, started
 def docking(robot_type):
     """Return a robot that is looking for its dock."""
     driven = started(robot_type)
-    driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven.driver.orders.dock(driven.now)
     driven.run(1)
     assert driven.robot.program_runs and driven.robot.mode == PASSIVE and driven.body.moving
     return driven
@@ -26,7 +26,7 @@ def on_dock(robot_type, **params):
 
 
 def undock(driven):
-    driven.driver.orders.undock(driven.now, driven.driver.reading)
+    driven.driver.orders.undock(driven.now)
 
 
 def undocking(robot_type):
@@ -138,21 +138,21 @@ def test_the_exit_ends_both_even_if_the_first_bytes_of_the_stop_are_lost(robot_t
             driven.run(0.002)
     assert driven.driver.left and not driven.body.moving and driven.robot.mode == PASSIVE
     with pytest.raises(RefusedCommand, match='shutting down'):
-        driven.driver.orders.dock(driven.now, driven.driver.reading)
+        driven.driver.orders.dock(driven.now)
 
 
 @BOTH
 def test_an_order_to_dock_that_was_lost_is_repeated(robot_type):
     driven = started(robot_type)
     write, driven.driver.sender.write = driven.driver.sender.write, lambda data: None
-    driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven.driver.orders.dock(driven.now)
     driven.driver.sender.write = write
     driven.run(1)
     assert driven.robot.program_runs and driven.robot.programs_started == 1
     driven.run(3)
     assert driven.robot.program_runs and driven.robot.programs_started == 1
     # a new order starts it again
-    driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven.driver.orders.dock(driven.now)
     driven.run(3)
     assert driven.robot.program_runs
 
@@ -192,7 +192,7 @@ def test_a_program_that_was_started_by_a_button_is_replaced(robot_type):
     driven = started(robot_type)
     driven.robot.receive(command('cover'), driven.now)
     driven.run(0.1)
-    driven.driver.orders.dock(driven.now, driven.driver.reading)
+    driven.driver.orders.dock(driven.now)
     driven.run(2)
     assert driven.robot.program_runs and driven.robot.programs_started == 2
 
@@ -230,7 +230,7 @@ def test_an_order_that_cannot_be_followed(robot_type, order, attribute, value, t
     setattr(driven.body, attribute, value)
     driven.run(1)
     with pytest.raises(RefusedCommand, match=text):
-        getattr(driven.driver.orders, order)(driven.now, driven.driver.reading)
+        getattr(driven.driver.orders, order)(driven.now)
     driven.run(1)
     assert not driven.robot.program_runs and not driven.body.moving
 
@@ -238,11 +238,11 @@ def test_an_order_that_cannot_be_followed(robot_type, order, attribute, value, t
 def test_no_robot_and_passive_mode():
     driven = started('create2', operation_mode=1)
     with pytest.raises(RefusedCommand, match='operation_mode: 1'):
-        driven.driver.orders.dock(driven.now, driven.driver.reading)
+        driven.driver.orders.dock(driven.now)
     driven = started('create2')
     driven.line.silent = True
     driven.run(1)
     for order in driven.driver.orders.dock, driven.driver.orders.undock:
         with pytest.raises(RefusedCommand, match='does not answer'):
-            order(driven.now, driven.driver.reading)
+            order(driven.now)
     assert driven.robot.mode != OFF

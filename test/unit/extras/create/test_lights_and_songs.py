@@ -81,11 +81,11 @@ def test_lights_are_set_again_when_control_is_regained(robot_type):
 def test_a_song_is_stored_and_played(robot_type):
     driven = started(robot_type)
     orders = driven.driver.orders
-    orders.send(driven.now, define_song([1, 60, 0.5, 64, 0.25]), driven.driver.reading)
-    orders.send(driven.now, play_song(1), driven.driver.reading)
+    orders.send(driven.now, define_song([1, 60, 0.5, 64, 0.25]))
+    orders.send(driven.now, play_song(1))
     driven.run(0.5)
     assert driven.robot.panel.is_playing and driven.robot.panel.number == 1
-    orders.send(driven.now, play_song(1), driven.driver.reading)    # ignored
+    orders.send(driven.now, play_song(1))    # ignored
     driven.run(0.5)
     assert not driven.robot.panel.is_playing and driven.driver.contact.answers
 
@@ -95,14 +95,14 @@ def test_a_song_that_cannot_be_played(robot_type):
     driven = started(robot_type)
     with pytest.raises(RefusedCommand, match='the serial line is busy'):
         for _ in range(20):
-            driven.driver.orders.send(driven.now, define_song([0] + 16 * [60, 1]), driven.driver.reading)
+            driven.driver.orders.send(driven.now, define_song([0] + 16 * [60, 1]))
     driven.body.switches = 8
     driven.run(1)
     driven.commands.clear()
     with pytest.raises(RefusedCommand, match='not driven: a wheel dropped'):
-        driven.driver.orders.send(driven.now, play_song(0), driven.driver.reading)
+        driven.driver.orders.send(driven.now, play_song(0))
     driven.driver.leave(driven.now)
     with pytest.raises(RefusedCommand, match='shutting down'):
-        driven.driver.orders.send(driven.now, play_song(0), driven.driver.reading)
+        driven.driver.orders.send(driven.now, play_song(0))
     driven.run(0.2)
     assert command('play_song', 0) not in [data for _, data in driven.commands]

@@ -10,15 +10,11 @@ class Panel:
     def __init__(self, now: int) -> None:
         self.now = now
         self.lights = 0, 0, 0       # bits of the LEDs, color and brightness of the power LED
-        self.digits = b''           # characters on the display of a Create 2
         self.songs: dict[int, bytes] = {}       # pairs of note and duration (1/64 s), by number
         self.number, self.end = 0, now      # the last song, and when it ends
 
     def leds(self, data: bytes) -> None:
         self.lights = data[0], data[1], data[2]
-
-    def digit_leds_ascii(self, data: bytes) -> None:
-        self.digits = data
 
     def song(self, data: bytes) -> None:
         self.songs[data[0]] = data[2:]
