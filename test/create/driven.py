@@ -109,18 +109,19 @@ class DrivenRobot(EmulatedRobot):
         return support.wait_for(check, what)
 
     @contextlib.contextmanager
-    def driving(self, linear=0.2, angular=0.0):
-        """A context in which the robot moves, because a thread repeats the command even if this one has to wait."""
+    def driving(self, linear=0.2, angular=0.0, rate=50):
+        """A context in which the robot moves, because a thread repeats the command (rate: Hz) even if this one has to
+        wait. It returns an Event that ends the commands."""
         left = threading.Event()
 
         def send():
-            while not left.wait(0.02):
+            while not left.wait(1 / rate):
                 self.commander.send(linear, angular)
         thread = threading.Thread(target=send)
         thread.start()
         try:
             support.wait_for(lambda: self.moving, f'the robot to move: {self.node.output}')
-            yield
+            yield left
         finally:
             left.set()
             thread.join()

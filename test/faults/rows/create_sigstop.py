@@ -1,7 +1,6 @@
 """SIGSTOP to the base node of an emulated Create in motion, and SIGCONT: a stall, or a computer that was suspended."""
 import os
 import signal
-import threading
 import time
 
 import rospy
@@ -18,21 +17,12 @@ ROOT = False
 ALONE = True    # it measures a duration
 
 LIMIT = 0.2         # s from SIGCONT to the stop
-WAIT = 3            # s until the stop counts as missing
 OBSERVED = 1.5      # s in which the robot must not move
 
 
 def check(row, robot, seconds, stall, goes_on):
     """One fault, in motion. seconds: until the stall; goes_on: whether the driver sends commands all the time."""
-    left = threading.Event()
-
-    def send():
-        while not left.wait(0.02):
-            robot.commander.send(0.2, 0.3)
-    robot.drive(0.2, 0.3, lambda: robot.moving, 'the robot to move')
-    thread = threading.Thread(target=send)
-    thread.start()
-    try:
+    with robot.driving(0.2, 0.3) as left:
         time.sleep(seconds)
         assert robot.moving
         pid, count = support.pid_of('/turtlebot_node'), len(robot.received())
@@ -43,17 +33,13 @@ def check(row, robot, seconds, stall, goes_on):
         time.sleep(stall / 2)
         continued = rospy.get_time()
         os.kill(pid, signal.SIGCONT)
-        delay = support.wait_for(lambda: [stamp for stamp, data in robot.received()[count:]
-                                          if data == STOP and stamp > continued], 'a stop', WAIT)[0] - continued
+        delay = robot.wait_for_command(count, lambda stamp, data: data == STOP and stamp > continued)[0] - continued
         row.figure('stop after (s)', delay)
         assert delay < LIMIT, f'{delay:.3f} s'
         robot.wait_for_standstill()
         end = time.monotonic() + OBSERVED
         while time.monotonic() < end:
             assert not robot.moving, 'the robot drives on'
-    finally:
-        left.set()
-        thread.join()
     robot.commander.send(0.0, 0.0)
     robot.drive_again()
 

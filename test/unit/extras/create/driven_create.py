@@ -52,19 +52,16 @@ class DrivenCreate:
         self.held = [], bytearray()     # writes and replies that wait until then
 
     def log_error(self, text):
-        """Log an error."""
         self.log.append(text)
         self.errors.append(text)
 
     def connect(self):
-        """Plug the cable in."""
         self.connected = True
         self.driver.attach(self.now, self)
 
     # the interface of a Link for the driver
 
     def write(self, data):
-        """Send bytes."""
         lost, self.losing = data[:self.losing], max(0, self.losing - len(data))
         if self.now < self.hangs_until:
             self.held[0].append(data[len(lost):])
@@ -72,12 +69,10 @@ class DrivenCreate:
             self.robot.receive(data[len(lost):], self.now)
 
     def write_apart(self, data):
-        """Send bytes one by one."""
         for byte in data:
             self.write(bytes((byte,)))
 
     def set_rate(self, baud):
-        """Set the rate of the host."""
         self.line.host_baud = baud
 
     def confirm(self, model):
@@ -139,7 +134,6 @@ class DrivenCreate:
         self.velocity = None
 
     def command_zero(self):
-        """Stop the robot with a zero command."""
         self.command(0, 0)
 
     @property

@@ -92,38 +92,32 @@ def halt(driven):
     driven.gate.halt()
 
 
-@BOTH
-@pytest.mark.parametrize('end, text', [
-    (command_zero, 'a command from /teleop'), (command_motion, 'a command from /teleop'), (stop, 'the guardian'),
-    (plug_in_again, 'it did not answer')])
-def test_what_ends_docking(robot_type, end, text):
-    driven = docking(robot_type)
-    end(driven)
-    driven.run(0.05)
-    assert not driven.robot.program_runs and not driven.driver.orders.state
-    assert any(f'no longer docking: {text}' in line for line in driven.log), driven.log
-    driven.drive(-0.1, 0.0, 0.5)
-    assert driven.robot.mode == SAFE and (driven.speeds == (-100, -100) or end in (stop, plug_in_again))
-
-
 def senses(name, bits):
     return lambda driven: setattr(driven.body, name, bits)
 
 
 @BOTH
-@pytest.mark.parametrize('end, text', [
-    (command_zero, 'a command from /teleop'), (stop, 'the guardian'), (halt, 'it was stopped'),
-    (senses('switches', WHEEL_DROP_RIGHT), 'a wheel dropped'), (senses('cliffs', 1), 'a cliff'),
-    (senses('cliffs', 8), 'a cliff')])
-def test_what_ends_undocking(robot_type, end, text):
-    driven = undocking(robot_type)
+@pytest.mark.parametrize('begin, end, text', [
+    *((begin, *each) for begin in (docking, undocking)
+      for each in ((command_zero, 'a command from /teleop'), (stop, 'the guardian'))),
+    (docking, command_motion, 'a command from /teleop'), (docking, plug_in_again, 'it did not answer'),
+    (undocking, halt, 'it was stopped'), (undocking, senses('switches', WHEEL_DROP_RIGHT), 'a wheel dropped'),
+    (undocking, senses('cliffs', 1), 'a cliff'), (undocking, senses('cliffs', 8), 'a cliff')])
+def test_what_ends_docking_and_undocking(robot_type, begin, end, text):
+    driven = begin(robot_type)
     end(driven)
     driven.run(0.1)
-    assert not driven.body.moving and driven.robot.mode == PASSIVE and not driven.driver.orders.state
-    assert any(f'no longer undocking: {text}' in line for line in driven.log), driven.log
-    driven.body.switches = driven.body.cliffs = 0
-    driven.run(3)
-    assert not driven.body.moving and driven.robot.mode == PASSIVE and driven.driver.reading['charging_state']
+    assert not driven.robot.program_runs and not driven.driver.orders.state
+    assert any(f'no longer {begin.__name__}: {text}' in line for line in driven.log), driven.log
+    if begin is docking:
+        driven.drive(-0.1, 0.0, 0.5)
+        assert driven.robot.mode == SAFE and (driven.speeds == (-100, -100) or end in (stop, plug_in_again))
+        return
+    for seconds in 0, 3:        # on its dock, it remains where it is, and charges
+        driven.run(seconds)
+        assert not driven.body.moving and driven.robot.mode == PASSIVE
+        driven.body.switches = driven.body.cliffs = 0
+    assert driven.driver.reading['charging_state']
 
 
 @BOTH

@@ -48,13 +48,6 @@ def test_a_command_times_out(robot_type):
     assert driven.speeds == (0, 0)
 
 
-def test_a_bump_does_not_stop_if_it_should_not():
-    driven = started('create', stop_motors_on_bump=False)
-    driven.body.switches = 3
-    driven.drive(0.2, 0, 0.5)
-    assert driven.speeds == (200, 200)
-
-
 def test_slow_turns_are_commanded_at_the_least_speed():
     driven = started('create', min_abs_yaw_vel=0.5, max_abs_yaw_vel=1.0)
     for asked, speed in ((0.1, 65), (-0.1, -65), (0.7, 91), (2.0, 130), (0.0, 0)):

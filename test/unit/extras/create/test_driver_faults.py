@@ -118,18 +118,6 @@ def test_the_covariance_of_a_create_holds_what_a_line_without_a_checksum_loses_a
     assert 0.03 < sum(errors) / len(errors) < 6     # mostly too large: few corrupted counts pass the checks
 
 
-def test_a_clock_that_went_on_while_the_computer_was_suspended_stops_the_robot():
-    driven = started('create2')
-    driven.drive(0.2, 0, 1)
-    driven.connected = False    # the processes are suspended, the robot continues
-    driven.run(20)
-    driven.connected = True
-    driven.run(0.1)
-    assert driven.speeds == (0, 0)
-    driven.run(1)
-    assert normalized_error(driven) < CHI_SQUARE
-
-
 @pytest.mark.parametrize('corruption', [0.05, 0.1])
 def test_a_robot_on_a_very_bad_line_is_stopped(corruption):
     for seed in range(8):

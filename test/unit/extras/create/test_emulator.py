@@ -38,15 +38,6 @@ def test_each_command_takes_its_data_bytes_also_where_it_is_ignored(model, each,
 
 
 @both
-@pytest.mark.parametrize('mode', [OFF, PASSIVE])
-def test_it_drives_in_safe_and_full_mode_only(model, mode):
-    robot = robot_in(mode, model)
-    robot.send(drive_direct(200, 200))
-    robot.run(1)
-    assert robot.pose.x == 0
-
-
-@both
 @pytest.mark.parametrize('fault, bits', [('switches', 8), ('cliffs', 6), ('docked', True)])
 def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fault, bits):
     for mode, after in (SAFE, PASSIVE), (FULL, FULL):
@@ -135,15 +126,3 @@ def test_a_command_takes_effect_when_its_last_byte_has_arrived():
     (time, data), = robot.commands
     assert data == drive_direct(200, 200) and time - start == pytest.approx(5 * 10 / 115200 * 1e9, abs=10)
     assert robot.pose.x == pytest.approx(0.2 * (robot.now - time) / 1e9)
-
-
-@both
-@given(st.integers(1, 4))
-def test_half_a_command_waits_for_its_other_half(model, count):
-    robot = robot_in(FULL, model)
-    data = drive_direct(200, 200)
-    robot.send(data[:count])
-    robot.run(10)
-    assert not robot.body.moving
-    robot.send(data[count:])
-    assert robot.body.moving

@@ -8,11 +8,10 @@ import time
 import pytest
 
 from rbx1_nav.extras.create import guardian
-from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal
 from rbx1_nav.extras.create.serial_port import PortError, open_port
 from waiting import wait_for
 
-STOP = b'\0\0\x91\0\0\0\0\x80'
+STOP, COMMAND = b'\0\0\x91\0\0\0\0\x80', b'\x91'
 LIMIT = 30      # s after which a wait fails
 
 # a process that opens the port, starts a guardian, and sends heartbeats; it prints both process ids
@@ -34,15 +33,22 @@ GUARDIAN = guardian.__file__
 SOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'src')
 
 
-@pytest.fixture(name='terminal')
-def make_terminal(tmp_path):
-    terminal = PseudoTerminal(str(tmp_path / 'robot'))
-    terminal.processes = []
-    yield terminal
-    for process in terminal.processes:
+@pytest.fixture(name='start')
+def make_start(terminal):
+    """A function that returns (the guarded process, the process id of its guardian)."""
+    processes = []
+
+    def start():
+        process = subprocess.Popen([sys.executable, '-c', GUARDED, SOURCE, terminal.link, STOP.hex(), COMMAND.hex()],
+                                   stdout=subprocess.PIPE, start_new_session=True)
+        processes.append(process)
+        pid = int(process.stdout.readline())
+        assert read_until(terminal, COMMAND) == COMMAND
+        return process, pid
+    yield start
+    for process in processes:
         process.kill()
         process.wait()
-    terminal.unplug()
 
 
 def read_until(terminal, end):
@@ -55,16 +61,6 @@ def read_until(terminal, end):
     return data
 
 
-def start(terminal, command=b'\x91'):
-    """Return (the guarded process, the process id of its guardian)."""
-    process = subprocess.Popen([sys.executable, '-c', GUARDED, SOURCE, terminal.link, STOP.hex(), command.hex()],
-                               stdout=subprocess.PIPE, start_new_session=True)
-    terminal.processes.append(process)
-    pid = int(process.stdout.readline())
-    assert read_until(terminal, command) == command
-    return process, pid
-
-
 def wait_for_end(pid):
     wait_for(lambda: not os.path.exists(f'/proc/{pid}'))
 
@@ -72,8 +68,8 @@ def wait_for_end(pid):
 @pytest.mark.parametrize('end', [
     lambda process: process.kill(), lambda process: os.killpg(process.pid, signal.SIGKILL),
     lambda process: process.terminate()], ids=['kill', 'kill the group', 'terminate'])
-def test_the_end_of_the_process_sends_the_stop(terminal, end):
-    process, pid = start(terminal)
+def test_the_end_of_the_process_sends_the_stop(terminal, start, end):
+    process, pid = start()
     for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP:     # as killall sends them
         os.kill(pid, number)
     end(process)
@@ -83,8 +79,8 @@ def test_the_end_of_the_process_sends_the_stop(terminal, end):
     open_port(terminal.link, 115200).close()
 
 
-def test_a_process_that_hangs_is_stopped_once(terminal):
-    process, pid = start(terminal)
+def test_a_process_that_hangs_is_stopped_once(terminal, start):
+    process, pid = start()
     process.send_signal(signal.SIGSTOP)
     assert read_until(terminal, STOP) == STOP
     process.send_signal(signal.SIGCONT)
@@ -94,8 +90,8 @@ def test_a_process_that_hangs_is_stopped_once(terminal):
     wait_for_end(pid)
 
 
-def test_the_port_is_in_use_until_the_stop_is_sent(terminal):
-    process, pid = start(terminal)
+def test_the_port_is_in_use_until_the_stop_is_sent(terminal, start):
+    process, pid = start()
     os.kill(pid, signal.SIGSTOP)
     process.kill()
     process.communicate()
@@ -118,8 +114,8 @@ def test_a_process_that_dies_while_its_guardian_starts_is_stopped_too(terminal):
         assert process.wait() == 0
 
 
-def test_a_cable_that_is_gone_ends_the_guardian(terminal):
-    process, pid = start(terminal)
+def test_a_cable_that_is_gone_ends_the_guardian(terminal, start):
+    process, pid = start()
     terminal.unplug()
     process.kill()
     process.communicate()

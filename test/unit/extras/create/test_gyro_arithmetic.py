@@ -22,28 +22,27 @@ def feed(gyro, count, times, **options):
     return reading
 
 
-def make_gyro(correction=1.0):
-    """Return (gyro, its log)."""
-    log = []
-    return AnalogGyro(read_settings({'gyro_scale_correction': correction})[0], log.append, log.append), log
+def make_gyro(correction=1.0, full_range=150):
+    return AnalogGyro(read_settings({'gyro_scale_correction': correction, 'gyro_measurement_range': full_range})[0],
+                      None, None)
 
 
 def calibrated(count=512, times=100):
     """Return a gyro with an offset."""
-    gyro, _ = make_gyro()
+    gyro = make_gyro()
     feed(gyro, count, times, rest=True)
     assert gyro.offset == count
     return gyro
 
 
-@pytest.mark.parametrize('correction', [1.0, 1.35])
+@pytest.mark.parametrize('correction, full_range', [(1.0, 150), (1.35, 150), (1.0, 300)])
 @pytest.mark.parametrize('count', [112, 500, 700])
-def test_the_rate_is_what_create_node_computes(count, correction):
-    gyro, _ = make_gyro(correction)
+def test_the_rate_is_what_create_node_computes(count, correction, full_range):
+    gyro = make_gyro(correction, full_range)
     feed(gyro, 500, 20, rest=True)
     reading = gyro.update(count, step())
-    assert reading.rate == pytest.approx(-(count - 500) / 500 * radians(150) * correction)
-    assert reading.rate_variance == pytest.approx((radians(150) * correction / 500) ** 2)       # one count
+    assert reading.rate == pytest.approx(-(count - 500) / 500 * radians(full_range) * correction)
+    assert reading.rate_variance == pytest.approx((radians(full_range) * correction / 500) ** 2)       # one count
 
 
 def test_the_heading_and_its_variance_grow_with_each_reading():

@@ -7,8 +7,7 @@ from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
 from rbx1_nav.extras.create.emulator.emulator import EmulatedCreate
 from rbx1_nav.extras.create.emulator.serial_line import misread
-from rbx1_nav.extras.create.identification import RATES, WAKE_TIME, Search, is_battery
-from rbx1_nav.extras.create.sender import Sender
+from rbx1_nav.extras.create.identification import RATES, is_battery
 
 from driven_create import DrivenCreate, started
 
@@ -139,39 +138,6 @@ def test_no_byte_of_the_search_is_a_command_at_another_rate(sent_at, read_at):
             for patient in (False, True):
                 ratio = sent_at / read_at * (1 + error / 1000)
                 assert set(received(data, ratio, patient)) & OPCODES <= HARMLESS, (error, patient)
-
-
-class Line:
-    """Records the actions of a Search on a line without a robot."""
-
-    def __init__(self):
-        self.now = 0
-        self.wake_lines = []    # (ns, level)
-
-    def set_rate(self, baud):
-        pass
-
-    def write(self, data):
-        pass
-
-    write_apart = write
-
-    def set_wake_lines(self, on):
-        self.wake_lines.append((self.now, on))
-
-
-@pytest.mark.parametrize('wake', [False, True])
-def test_a_robot_that_sleeps_is_woken_only_if_that_is_wanted(wake):
-    line, search = Line(), Search(Sender(), RATES, wake)
-    search.begin(0, line)
-    for line.now in range(0, 10 * SECOND, SECOND // 500):
-        search.tick(line.now)
-    assert bool(line.wake_lines) == wake
-    # first all rates are tried; both levels then last long, since three pulses below 500 ms change the robot's rate
-    times = [time for time, _ in line.wake_lines]
-    assert all(time > SECOND // 3 for time in times[:1])
-    assert all(after - before >= WAKE_TIME > SECOND // 2 for before, after in zip(times, times[1:]))
-    assert [level for _, level in line.wake_lines] == [False, True] * (len(times) // 2) + [False] * (len(times) % 2)
 
 
 @pytest.mark.parametrize('data, whole', [

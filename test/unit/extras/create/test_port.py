@@ -7,15 +7,7 @@ import termios
 import pytest
 
 from rbx1_nav.extras.create import serial_port as module
-from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal
-from rbx1_nav.extras.create.serial_port import PortError, open_port, reason
-
-
-@pytest.fixture(name='terminal')
-def make_terminal(tmp_path):
-    terminal = PseudoTerminal(str(tmp_path / 'robot'))
-    yield terminal
-    terminal.unplug()
+from rbx1_nav.extras.create.serial_port import PortError, group_of, open_port, reason
 
 
 def refusal(path):
@@ -24,30 +16,12 @@ def refusal(path):
     return str(caught.value)
 
 
-def test_no_device(tmp_path):
-    path = tmp_path / 'none'
-    assert refusal(path) == f"{path}: no such device: expected the robot's adapter to be plugged in"
-
-
-def test_not_a_serial_port(tmp_path):
-    path = tmp_path / 'file'
-    path.write_text('')
-    assert refusal(path) == f'{path}: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
-    assert refusal(
-        tmp_path) == f'{tmp_path}: not a serial port: expected the device of an adapter, such as /dev/ttyUSB0'
-
-
-def test_what_a_user_without_permission_reads(tmp_path):
-    text = reason(str(tmp_path / 'none'), 13, None)     # also if the group is unknown
-    assert text == ('not permitted: expected a member of the group dialout; run `sudo adduser $USER dialout`, then log '
-                    'in again')
-
-
-def test_a_port_of_the_group_root_needs_the_udev_rules(monkeypatch):
-    monkeypatch.setattr(module, 'group_of', lambda path: 'root')
-    assert reason('/dev/ttyUSB0', 13, None) == (
-        'not permitted: expected a port of the group dialout; install the udev rules: see docs/real_robot.md, "The '
-        'serial port"')
+@pytest.mark.parametrize('name, text', [
+    ('none', "no such device: expected the robot's adapter to be plugged in"),
+    *((name, 'not a serial port: expected the device of an adapter, such as /dev/ttyUSB0') for name in ('file', ''))])
+def test_what_is_no_port(tmp_path, name, text):
+    (tmp_path / 'file').write_text('')
+    assert refusal(tmp_path / name) == f'{tmp_path / name}: {text}'
 
 
 def test_another_process_has_it(terminal):
@@ -69,11 +43,22 @@ def test_an_adapter_that_is_unplugged_while_it_is_opened(call, terminal, monkeyp
     assert 'no such device' in refusal(terminal.link)
 
 
-@pytest.mark.parametrize('number, text', [
-    (errno.EAGAIN, 'in use by another process'), (errno.EBUSY, 'in use by another process'),
-    (errno.EACCES, 'not permitted'), (errno.EPERM, 'not permitted'), (errno.ENOENT, 'no such device'),
-    (errno.ENXIO, 'no such device'), (errno.ENODEV, 'no such device'), (errno.ENOTTY, 'not a serial port'),
-    (errno.EINVAL, 'not a serial port'), (errno.EISDIR, 'not a serial port'), (errno.EIO, 'no such device'),
-    (None, 'some error')])
-def test_why_a_port_cannot_be_opened(number, text, tmp_path):
-    assert reason(str(tmp_path / 'none'), number, OSError('some error')).startswith(text)
+NO_PERMISSION = {
+    'dialout': 'a member of the group dialout; run `sudo adduser $USER dialout`, then log in again',
+    'root': 'a port of the group dialout; install the udev rules: see docs/real_robot.md, "The serial port"'}
+
+
+@pytest.mark.parametrize('number, group, text', [
+    (errno.EAGAIN, '', 'in use by another process'), (errno.EBUSY, '', 'in use by another process'),
+    *((number, group, f'not permitted: expected {text}')
+      for number in (errno.EACCES, errno.EPERM) for group, text in NO_PERMISSION.items()),
+    *((number, '', 'no such device') for number in (errno.ENOENT, errno.ENXIO, errno.ENODEV, errno.EIO)),
+    *((number, '', 'not a serial port') for number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR)),
+    (None, '', 'some error')])
+def test_why_a_port_cannot_be_opened(monkeypatch, number, group, text):
+    monkeypatch.setattr(module, 'group_of', lambda path: group)
+    assert reason('/dev/ttyUSB0', number, OSError('some error')).startswith(text)
+
+
+def test_the_group_of_a_port_that_is_missing(tmp_path):
+    assert group_of(str(tmp_path / 'none')) == 'dialout'

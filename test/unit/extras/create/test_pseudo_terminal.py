@@ -8,13 +8,6 @@ from rbx1_nav.extras.create.emulator.serial_line import PseudoTerminal
 from rbx1_nav.node.config import ConfigError
 
 
-@pytest.fixture(name='terminal')
-def fixture_terminal(tmp_path):
-    terminal = PseudoTerminal(str(tmp_path / 'port'))
-    yield terminal
-    terminal.unplug()
-
-
 def received(terminal, count):
     """Return the next `count` bytes from the client."""
     data = b''

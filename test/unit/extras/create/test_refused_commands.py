@@ -70,6 +70,12 @@ def test_a_bump_stops_forward_motion_at_once_and_is_refused_after_300_ms(bits):
     assert base.command(0.2, 0, NOW + 3 * SECOND) == ''
 
 
+def test_a_bump_does_not_stop_if_it_should_not():
+    base = Base(stop_motors_on_bump=False)
+    base.feel(3, 3)
+    assert base.command(0.2, 0) == base.command(0.2, 0, NOW + SECOND) == '' and base.speeds == (200, 200)
+
+
 @pytest.mark.parametrize('bits', [4, 8, 16])
 def test_two_readings_show_a_dropped_wheel(bits):
     base = Base()

@@ -3,7 +3,7 @@ import pytest
 
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
-from rbx1_nav.extras.create.identification import Search, has_frames
+from rbx1_nav.extras.create.identification import WAKE_TIME, Search, has_frames
 from rbx1_nav.extras.create.sender import Phase, Sender
 
 RATES = (57600, 115200, 19200)
@@ -14,7 +14,7 @@ class Line:
     """Records what a Search does."""
 
     def __init__(self):
-        self.rates, self.sent, self.apart = [], [], []
+        self.rates, self.sent, self.apart, self.wakes = [], [], [], []
 
     def set_rate(self, baud):
         self.rates.append(baud)
@@ -24,6 +24,10 @@ class Line:
 
     def write_apart(self, data):
         self.apart.append(data)
+
+    def set_wake_lines(self, on):
+        self.wakes.append(on)
+        return True
 
 
 def battery(state=2, voltage=16000, temperature=25):
@@ -35,11 +39,11 @@ def battery(state=2, voltage=16000, temperature=25):
 class Searching:
     """A Search whose next step can be awaited."""
 
-    def __init__(self, rates=RATES, baud=None):
+    def __init__(self, rates=RATES, baud=None, wake=False):
         self.line, sender, self.now = Line(), Sender(), SECOND
         sender.use_line(self.line.write)
         sender.phase = Phase.SEARCHING
-        self.search = Search(sender, rates)
+        self.search = Search(sender, rates, wake)
         self.search.begin(self.now, self.line, baud)
 
     def answer(self, data):
@@ -71,6 +75,19 @@ def test_the_rates_are_tried_in_turn_the_expected_one_first(baud, order):
         assert searching.search.rounds == (len(searching.line.rates) - 1) // 3
         searching.step()
     assert tuple(searching.line.rates) == order * 2 + order[:1] and searching.search.rounds == 2
+
+
+@pytest.mark.parametrize('wake', [False, True])
+def test_a_robot_that_sleeps_is_woken_in_each_round_only_if_that_is_wanted(wake):
+    searching, levels = Searching(wake=wake), []    # (number of rates that were tried, level, ns)
+    for _ in range(12):
+        before = len(searching.line.wakes)
+        searching.step()
+        levels += [(len(searching.line.rates), level, searching.now) for level in searching.line.wakes[before:]]
+    rates, lines, times = zip(*levels) if levels else ((), (), ())
+    assert rates == (3, 3, 6, 6)[:4 * wake] and lines == (False, True, False, True)[:4 * wake]
+    # both levels last long: three pulses below 500 ms change the robot's rate
+    assert all(after - before >= WAKE_TIME > SECOND // 2 for before, after in zip(times, times[1:]))
 
 
 def test_two_replies_in_a_row_are_required():
