@@ -20,6 +20,7 @@ WRONG, RESET = 3, 6     # consecutive implausible readings: the last good one wa
 DOUBT = 0.5             # 1 sigma of a reading if all replies around it are lost, as a fraction of reach(); measured
 DIRTY = 0.01            # share of lost replies from which a turn that was not commanded counts as corrupted,
 DOUBTFUL = 16.0         # degrees, if it is larger: what a robot can turn between two readings
+SILENT = 0.5            # s without a reading, in which the robot may not have received the commands
 ANYWHERE = 10.0         # m, 1 sigma of the travel of a robot that has stopped counting
 ROUND = 1 / 12 ** 0.5   # 1 sigma of rounding to a whole number
 STANDSTILL = SECOND // 2    # ns without travel or a command to move, after which the robot is stationary
@@ -188,7 +189,7 @@ class CounterTravel:
         turn, commanded = reading['angle'], self.fractions.turn + self._turn(expected)
         # a corrupted angle after a long time may look possible; on a line that loses nothing, somebody turns the robot
         error = min(abs(turn - commanded), abs(turn - commanded + self.fractions.lost))
-        if lost_share > DIRTY and error > DOUBTFUL + DOUBT * abs(commanded):
+        if lost_share > DIRTY and elapsed < SILENT and error > DOUBTFUL + DOUBT * abs(commanded):
             return False
         share = elapsed / time if time else 1.0
         return abs(reading['distance']) / 1000 + radians(abs(turn)) * share * self.width / 2 <= reach(elapsed)

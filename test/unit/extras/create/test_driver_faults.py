@@ -10,7 +10,7 @@ from rbx1_nav.extras.create import protocol
 
 from driven_create import BOTH, NO_ERRORS, SURFACES, DrivenCreate, started
 
-STOP = protocol.drive_direct(0, 0)
+STOP, START = protocol.drive_direct(0, 0), protocol.command('start')
 CHI_SQUARE = 16.3       # 99.9 % quantile for 3 degrees of freedom
 
 
@@ -33,28 +33,38 @@ def drive_on_a_bad_line(robot_type, seed, **params):
     return driven
 
 
-def pull_cable(robot_type, seed, surface, **params):
-    """Return the normalized squared error after a gap at a random moment of a random motion, and check the stop."""
+def interrupt(robot_type, seed, surface, is_pulled, **params):
+    """Pull the cable, or let the line fall silent, at a random moment of a random motion, and check the stop. Returns the
+    normalized squared error."""
     choose = random.Random(seed)
     driven = started(robot_type, surface=surface, seed=seed, **params)
     driven.drive(choose.uniform(-0.3, 0.3), choose.choice([0, choose.uniform(-1, 1)]), choose.uniform(0.5, 3))
     driven.run(0.002 * choose.randrange(17))
-    driven.pull()
-    driven.run(choose.uniform(0.05, 4))
+    if is_pulled:
+        driven.pull()
+        driven.run(choose.uniform(0.05, 4))
+    else:
+        driven.line.silent = True
+        driven.run(choose.uniform(1, 4))
+        assert 'The robot has stopped responding' in driven.log[-1]
+        driven.line.silent = False
     assert driven.body.moving       # nothing stops the robot
     count = len(driven.commands)
-    driven.connect()
-    driven.run(0.5)
-    assert driven.commands[count][1] == STOP
+    if is_pulled:
+        driven.connect()
+    driven.run(0.5 if is_pulled else 3)     # it may have to be searched for
+    # the first command that concerns the wheels
+    assert next(data for _, data in driven.commands[count:] if data[0] in (STOP[0], START[0])) in (STOP, START)
     assert driven.driver.contact.answers and driven.speeds == (0, 0)
     return normalized_error(driven)
 
 
-@pytest.mark.parametrize('surface, params', [('ideal', NO_ERRORS), ('low_ply_carpet', {})])
+@pytest.mark.parametrize('is_pulled, surface, params', [
+    (True, 'ideal', NO_ERRORS), (True, 'low_ply_carpet', {}), (False, 'ideal', NO_ERRORS)])
 @BOTH
-def test_the_odometry_knows_how_uncertain_a_gap_is(robot_type, surface, params):
+def test_the_odometry_knows_how_uncertain_a_gap_is(robot_type, is_pulled, surface, params):
     floor = load_surface(surface, SURFACES)
-    errors = [pull_cable(robot_type, seed, floor, **params) for seed in (*range(20), 475)]      # the last: an arc
+    errors = [interrupt(robot_type, seed, floor, is_pulled, **params) for seed in (*range(20), 475)]      # the last: an arc
     assert max(errors) < CHI_SQUARE
     assert 0.5 < sum(errors) / len(errors) < 6
 
