@@ -34,8 +34,8 @@ def drive_on_a_bad_line(robot_type, seed, **params):
 
 
 def interrupt(robot_type, seed, surface, is_pulled, **params):
-    """Pull the cable, or let the line fall silent, at a random moment of a random motion, and check the stop. Returns the
-    normalized squared error."""
+    """Pull the cable, or let the line fall silent, at a random moment of a random motion, and check the stop. Returns
+    the normalized squared error."""
     choose = random.Random(seed)
     driven = started(robot_type, surface=surface, seed=seed, **params)
     driven.drive(choose.uniform(-0.3, 0.3), choose.choice([0, choose.uniform(-1, 1)]), choose.uniform(0.5, 3))
@@ -64,7 +64,8 @@ def interrupt(robot_type, seed, surface, is_pulled, **params):
 @BOTH
 def test_the_odometry_knows_how_uncertain_a_gap_is(robot_type, is_pulled, surface, params):
     floor = load_surface(surface, SURFACES)
-    errors = [interrupt(robot_type, seed, floor, is_pulled, **params) for seed in (*range(20), 475)]      # the last: an arc
+    seeds = *range(20), 475     # the last: an arc
+    errors = [interrupt(robot_type, seed, floor, is_pulled, **params) for seed in seeds]
     assert max(errors) < CHI_SQUARE
     assert 0.5 < sum(errors) / len(errors) < 6
 
