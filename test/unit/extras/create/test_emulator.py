@@ -38,6 +38,13 @@ def test_each_command_takes_its_data_bytes_also_where_it_is_ignored(model, each,
 
 
 @both
+def test_in_passive_mode_it_does_not_drive(model):
+    robot = robot_in(PASSIVE, model)
+    robot.send(drive_direct(200, 200))
+    assert not robot.body.moving
+
+
+@both
 @pytest.mark.parametrize('fault, bits', [('switches', 8), ('cliffs', 6), ('docked', True)])
 def test_safe_mode_ends_when_something_happens_and_full_mode_does_not(model, fault, bits):
     for mode, after in (SAFE, PASSIVE), (FULL, FULL):
