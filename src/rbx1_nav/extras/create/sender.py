@@ -112,16 +112,16 @@ class Sender:
 
     def stop(self, now: int, stop: bytes = sequences.STOP, kind: Kind = Kind.STOP) -> None:
         """Send a stop: bytes that stop the robot."""
-        if self.may_send(kind):
-            self.travel(now)
-            self.speeds = 0, 0
-            self.send(now, kind, stop)
+        self._change(now, (0, 0), kind, stop)
 
     def drive(self, now: int, speeds: tuple[float, float]) -> None:
         """Send wheel speeds (left, right; mm/s), rounded to whole numbers, if the phase allows them."""
         left, right = round(speeds[0]), round(speeds[1])
         kind = Kind.SPEEDS if left or right else Kind.STOP
+        self._change(now, (left, right), kind, protocol.drive_direct(right, left))
+
+    def _change(self, now: int, speeds: tuple[int, int], kind: Kind, data: bytes) -> None:
         if self.may_send(kind):
             self.travel(now)
-            self.speeds = left, right
-            self.send(now, kind, protocol.drive_direct(right, left))
+            self.speeds = speeds
+            self.send(now, kind, data)
