@@ -37,27 +37,21 @@ def names(driven):
 
 @ROBOTS
 @AT_RATES
-def test_any_robot_is_found_at_any_rate(robot, baud):
-    driven = searching(robot, baud)
-    driven.run(2)
-    assert driven.found == protocol.MODELS[robot] and driven.driver.contact.found.baud == baud
-    assert driven.driver.supervisor.in_control
-    assert driven.log[0] == 'Connected to a %s at %d baud' % (robot, baud)
-    driven.drive(0.2, 0, 0.5)
-    assert driven.speeds == (200, 200)
-
-
-@ROBOTS
-@AT_RATES
-@pytest.mark.parametrize('robot_type', KINDS)
-def test_nothing_moves_while_the_robot_is_not_known(robot, baud, robot_type):
+@pytest.mark.parametrize('robot_type', ['auto', *KINDS])
+def test_any_robot_is_found_at_any_rate_and_nothing_moves_before(robot, baud, robot_type):
     driven = searching(robot, baud, robot_type)
     while not driven.found and driven.now < 20 * SECOND:
         driven.run(0.002)
         assert not driven.body.moving and not driven.robot.programs_started
     # all commands that it has received, including those in garbage
     assert set(names(driven)) <= ALLOWED
-    assert bool(driven.found) == (robot == robot_type)
+    assert bool(driven.found) == (robot_type in ('auto', robot))
+    if driven.found:
+        driven.run(1)
+        assert driven.found == protocol.MODELS[robot] and driven.driver.contact.found.baud == baud
+        assert driven.log == [f'Connected to a {robot} at {baud} baud', 'The robot is in safe mode']
+        driven.drive(0.2, 0, 0.5)
+        assert driven.speeds == (200, 200)
 
 
 @pytest.mark.parametrize('robot, robot_type', [*permutations(KINDS, 2), ('create', 'roomba600_wifi')])
