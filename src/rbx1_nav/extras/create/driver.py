@@ -11,7 +11,7 @@ from rbx1_nav.base.covariances import Reading, Travel
 from rbx1_nav.base.schedule import Schedule
 from rbx1_nav.base.units import SECOND
 from rbx1_nav.extras.create import protocol, sequences
-from rbx1_nav.extras.create.acceptance import OUTAGE, Acceptance
+from rbx1_nav.extras.create.refused_commands import OUTAGE, Acceptance
 from rbx1_nav.extras.create.analog_gyro import AnalogGyro, Step
 from rbx1_nav.extras.create.angle_fractions import Fractions
 from rbx1_nav.extras.create.connection import Contact, Supervisor, causes

@@ -5,7 +5,7 @@ import pytest
 
 from rbx1_nav.base.command_gate import CommandGate, RefusedCommand
 from rbx1_nav.base.units import SECOND
-from rbx1_nav.extras.create.acceptance import Acceptance
+from rbx1_nav.extras.create.refused_commands import Acceptance
 from rbx1_nav.extras.create.create_parameters import read_settings
 from rbx1_nav.extras.create.odometry import NOWHERE, Expected
 from rbx1_nav.extras.create.protocol import CLIFFS, CREATE
