@@ -6,6 +6,8 @@ usage: ekf.py [_parameter:=value ...] [topic:=new_topic ...]      usually starte
 from __future__ import annotations
 
 import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
+if __name__ == '__main__':
+    import rbx1_nav.node.without_numpy
 
 from functools import partial
 import threading

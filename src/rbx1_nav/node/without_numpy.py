@@ -1,0 +1,8 @@
+"""Hides numpy from rospy, which works without it: a node that does not use it takes 9 MB less memory.
+
+Import this module before rospy, and only in a process of its own.
+"""
+import sys
+from typing import Any, cast
+
+cast(Any, sys.modules)['numpy'] = None
