@@ -255,9 +255,11 @@ class System:
             answered.add(node)
 
     def take_shut_down(self) -> tuple[list[str], list[str]]:
-        """Return the nodes that were shut down since the last call, and those that did not answer."""
+        """Return the nodes that were shut down since the last call, and those that did not answer, at least once: rospy
+        answers a second request at once, although it waits for the master before the node stops."""
         with self.lock:
-            found = sorted(self.stopped), sorted((self.silent | self.shutting_down) - self.stopped)
+            silent = self.silent | self.shutting_down
+            found = sorted(self.stopped - silent), sorted(silent)
             self.stopped.clear()
             self.silent.clear()
         return found

@@ -89,6 +89,12 @@ def test_stop_shuts_down_the_drivers_that_are_connected_if_the_master_is_silent(
     assert calls == [('uri of /connected', 'shutdown')] and view.take_shut_down() == (['/connected'], ['the master'])
 
 
+def test_a_node_that_answers_only_the_second_request_may_drive_on(view):
+    view.silent.add('/driver')
+    view.stopped.add('/driver')
+    assert view.take_shut_down() == ([], ['/driver']) and view.take_shut_down() == ([], [])
+
+
 def test_the_poses_of_a_robot_at_rest_are_read_less_often_until_it_is_commanded_to_move(view):
     view.moved = -system.REST_TIME
     receive(view, {'callerid': '/arbotix'})
