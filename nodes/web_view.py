@@ -8,8 +8,7 @@ Prints the address to open. Whoever opens it first may move the robot. docs/web_
 from __future__ import annotations
 
 import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
-if __name__ == '__main__':
-    import rbx1_nav.node.without_numpy
+import rbx1_nav.node.without_numpy
 
 from functools import partial
 import os
