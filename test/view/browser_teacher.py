@@ -89,6 +89,11 @@ class TestBrowserTeacher(support.Case):
         self.wait_for(1, 'answer', 'The robot was stationary')
         support.wait_for(lambda: not self.driver.find_elements('css selector', '.alarm'), 'no alarm')
 
+        # a seat whose view exits is started again
+        os.kill(pid, signal.SIGKILL)
+        self.process.wait_for_line('seat 1: started again')
+        self.wait_for(1, 'state', '^Idle$')
+
     def test_an_address_for_another_browser_of_a_learner(self):
         self.page.click('.seat:nth-child(2) .invite')
         self.page.wait_for_text('notice', rf'Seat 2: .*:{self.pages + 2}/#\S{{20,}}$')
