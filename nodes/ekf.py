@@ -6,7 +6,6 @@ usage: ekf.py [_parameter:=value ...] [topic:=new_topic ...]      usually starte
 from __future__ import annotations
 
 import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
-import rbx1_nav.node.without_numpy
 
 from functools import partial
 import threading
@@ -50,7 +49,8 @@ class Ekf:
         self.diagnostics = Diagnostics((self.sender, self.imu_sender)[:1 + parameters.imu_used],
                                        parameters.sensor_timeout, self.lock,
                                        lambda: (self.combined, self.publisher.published))
-        self.odom_sub: rospy.Subscriber | None = None       # a message may arrive before this is assigned
+        # a message may arrive before these are assigned
+        self.odom_sub: rospy.Subscriber | None = None
         self.imu_sub: rospy.Subscriber | None = None
 
     def subscribe(self) -> None:

@@ -6,7 +6,6 @@ usage: fake_base.py [_parameter:=value ...] [topic:=new_topic ...]      usually 
 from __future__ import annotations
 
 import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
-import rbx1_nav.node.without_numpy
 
 from rbx1_nav.base.model_check import ModelCheck
 from rbx1_nav.base.publisher import with_frames

@@ -8,7 +8,6 @@ Prints the address to open. Whoever opens it first may move the robot. docs/web_
 from __future__ import annotations
 
 import rbx1_nav.node.early_interrupt     # first, so that Ctrl-C during the other imports exits quietly
-import rbx1_nav.node.without_numpy
 
 from functools import partial
 import os
