@@ -8,14 +8,14 @@ import time
 import rospy
 
 import support
-from rows.browsers import View
+from rows.browsers import SPEED, TIMEOUT, View
 from web_client import WebClient
 
 FAULT = ('a driver unregisters 0 to 30 ms before or after a Stop; a run of the page is stopped at a random moment; the '
          'node is frozen when a Stop arrives; another driver, the base or the master is frozen just before it')
 PROMISE = ('the Stop is answered; the robot is at rest; hand driving works afterwards; a frozen node answers when it '
-           'runs again; the answer names the driver or master that is frozen, or that no odometry has arrived, and the '
-           'robot does not drive on when these run again')
+           'runs again; the answer names the driver or master that is frozen, or that no odometry has arrived; when '
+           'these run again, the robot moves for at most the timeout of the base, 1 s')
 FULL, SHORT = 96, 8
 ROOT, ALONE = False, True
 
@@ -102,7 +102,9 @@ def stop_beside_frozen(row, view, client, pid, what):
     finally:
         os.kill(pid, signal.SIGCONT)
     time.sleep(REST)
-    row.figure(f'travel after a frozen {what} runs again, m', view.odom.position()[0] - before)
+    travel = view.odom.position()[0] - before
+    row.figure(f'travel after a frozen {what} runs again, m', travel)
+    assert travel < SPEED * (TIMEOUT + 0.2), f'{travel:.3f} m'    # 0.2 s: first command, last odometry
     return stopped
 
 
