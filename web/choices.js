@@ -3,8 +3,9 @@
 import {WORDS} from './words.js';
 
 export class Choices {
-  constructor(parent, connection) {
-    Object.assign(this, {parent, connection, inputs: {}});
+  // begin(): is called before a choice is sent
+  constructor(parent, connection, begin = () => {}) {
+    Object.assign(this, {parent, connection, begin, inputs: {}});
   }
 
   // enabled: whether the robot may be moved now
@@ -39,6 +40,7 @@ export class Choices {
     }
     input.name = name;
     input.onchange = () => {
+      this.begin();
       this.connection.send({type: 'choose', name, value: input.value.trim().replace(',', '.')});
       input.blur();
     };

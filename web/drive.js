@@ -17,6 +17,7 @@ export class Drive {
     this.connected = false;
     this.stopping = new Stop(connection, text => notify('stop', text, true), () => this.answered());
     this.hand = false;
+    this.pressed = true;    // whether Stop was pressed here since the last run began; before the first one, this is not known
     this.held = new Set();
     this.timer = null;
     this.stop = document.getElementById('stop');
@@ -136,6 +137,7 @@ export class Drive {
       this.dialog.close('cancel');
     }
     this.begin();
+    this.pressed = true;
     this.stopping.press();
   }
 
@@ -207,6 +209,10 @@ export class Drive {
     const {status} = this.model, {answer, timer} = this.stopping, driver = drivenBy(status), running = Boolean(driver);
     const ready = this.connected && !this.connection.silent && this.trusted && !status.master && Boolean(status.base) &&
       'odometry' in this.model.poses;
+    if (running && !this.running) {
+      this.pressed = false;
+    }
+    this.running = running;
     if (running && this.hand) {     // another browser has started a run
       this.setHand(false);
     }
@@ -229,7 +235,9 @@ export class Drive {
       : !this.trusted ? WORDS.noToken
       : running ? WORDS.running(driver)
       : this.hand ? WORDS.keysDrive
-      : status.started ? WORDS.outcome(WORDS[status.started], WORDS.said(status.outcome)) : '';
+      : !status.started ? ''
+      : WORDS.outcome(WORDS[status.started], status.outcome === 'stopped' && !this.pressed ? WORDS.stoppedElsewhere :
+        WORDS.said(status.outcome));
     const why = !ready || running ? [] : [
       ...unfiltered.map(run => WORDS.needsFilter(run.textContent)),
       !status.can_reset && WORDS.noReset];

@@ -42,7 +42,7 @@ const poses = new Poses(byId('tables'));
 const earlierRuns = new EarlierRuns(byId('earlier'), () => floor.drawEarlier(model.earlier));
 const log = new LogView(byId('lines'));
 const drive = new Drive(connection, model, notify);
-const choices = new Choices(byId('choices'), connection);
+const choices = new Choices(byId('choices'), connection, () => notify('refused', ''));
 const cursor = new Cursor([byId('linear'), byId('angular')], redraw);
 const plots = [new Plot(byId('linear'), WORDS.linearAxis, 1, 0.25, cursor),
   new Plot(byId('angular'), WORDS.angularAxis, 2, 1.2, cursor)];

@@ -26,12 +26,14 @@ class Seat {
     this.connected = false;
     this.section = byId('seat').content.firstElementChild.cloneNode(true);
     byId('seats').append(this.section);
-    const [link, button, svg] = ['a', 'button', 'svg'].map(each => this.section.querySelector(each));
+    const [link, button, invite, svg] = ['a', '.stop', '.invite', 'svg'].map(each => this.section.querySelector(each));
     [this.state, this.answer] = this.section.querySelectorAll('p');
     this.section.ariaLabel = link.textContent = name;
     link.href = `${location.protocol}//${host}/`;
     button.textContent = WORDS.stop;
     button.ariaLabel = WORDS.stopOne(name);
+    invite.title = invite.ariaLabel = `${name}: ${WORDS.inviteHelp}`;
+    invite.onclick = () => this.connection.send({type: 'invite'});
     svg.ariaLabel = WORDS.floorOf(name);
     this.floor = new Floor(svg);
     this.connection = new Connection('', host, token);
@@ -44,6 +46,7 @@ class Seat {
         notify(trusted ? '' : WORDS.teacherAddress);
       },
       frame: frame => this.model.add(frame),
+      invited: ({code}) => notify(`${name}: ${WORDS.invited(`${link.href}#${code}`)}`),
       refused: ({reason}) => {
         this.stop.end();
         this.alarm(WORDS.refused(WORDS.said(reason)));

@@ -20,13 +20,13 @@ export const WORDS = {
     `${known ? 'missed' : 'by its odometry, missed'} the start by ${distance} m and ${angle}°`,
   needsFilter: method => `${method} needs the filter: roslaunch rbx1_bringup odom_ekf.launch.`,
   noReset: 'Only a simulated robot can be reset.',
-  noToken: 'This page can only watch and stop the robot. To drive, open the complete address that the web view printed, or ' +
-    'ask for one in a page that can drive.',
+  noToken: 'This page can only watch. To drive, ask for an address: in a page that can drive, "Another browser" makes one.',
   masterSilent: 'The ROS master does not answer. Start roscore, the base and the web view again.',
   masterRestarted: 'The ROS master was restarted. Start the web view again.',
   noBase: 'Waiting for a base. Start one: roslaunch rbx1_bringup fake_turtlebot.launch',
   running: name => `Running: ${name}. Stop it to use the other buttons.`,
   keysDrive: 'The arrow keys drive the robot.',
+  stoppedElsewhere: 'stopped, not from this page',
   outcome: (name, outcome) => `${name}: ${outcome}`,
   said: text => text,     // a sentence of the node
   run: (name, stopped) => stopped ? `${name}, stopped` : name,
@@ -38,8 +38,7 @@ export const WORDS = {
   refused: reason => `Refused: ${reason}.`,
   rejected: {
     token: 'This browser may no longer drive, because the web view was started again: open the address that it has printed.',
-    code: 'The address that was opened has been used already, or is from an earlier start, so this page can only watch. If ' +
-      'nobody whom you know has used it, start the web view again.'},
+    code: 'This address has been used already, is not complete, or is from an earlier start of the web view.'},
   invite: 'Another browser', inviteHelp: 'Make an address with which one more browser can drive',
   invited: address => `For one more browser, which can then drive: ${address}`,
   realRobot: 'This robot is real', cancel: 'Cancel', allow: 'Allow motion',

@@ -14,10 +14,8 @@ const SENTENCES = [
     '按下“停止”$1 s 以后没有收到里程计：机器人可能还在动。'],
   [/^a run is in progress: stop it first$/, '正在运行，请先停止'],
   [/^(.+) is driving the robot: stop it first$/, '$1 正在驱动机器人，请先停止它'],
-  [/^this page can only watch: open the complete address that the web view printed$/,
-    '这个页面只能看：请打开 web_view.launch 打印的完整地址'],
-  [/^Stop needs the token here: open the complete address that the web view printed$/,
-    '在这里停止机器人也需要权限：请打开 web_view.launch 打印的完整地址']];
+  [/^this page can only watch$/, '这个页面只能看'],
+  [/^Stop needs the token here, and this page has none$/, '在这里停止机器人也需要权限，这个页面没有']];
 
 export const WORDS = {
   // header
@@ -37,12 +35,13 @@ export const WORDS = {
   missed: (distance, angle, known) => `${known ? '' : '按照里程计，'}离起点 ${distance} m，航向差 ${angle}°`,
   needsFilter: method => `“${method}”需要滤波器：roslaunch rbx1_bringup odom_ekf.launch。`,
   noReset: '只有仿真的机器人才能复位。',
-  noToken: '这个页面只能看，也能停止机器人。要驱动机器人，请打开 web_view.launch 打印的完整地址，或者在能驱动机器人的页面里要一个地址。',
+  noToken: '这个页面只能看。要驱动机器人，请要一个地址：在能驱动机器人的页面里，“再加一个浏览器”会生成一个。',
   masterSilent: 'ROS 节点管理器（master）没有应答。请重新启动 roscore、底盘和 web_view.launch。',
   masterRestarted: 'ROS 节点管理器（master）重新启动过。请重新启动 web_view.launch。',
   noBase: '正在等待底盘。启动一个：roslaunch rbx1_bringup fake_turtlebot.launch',
   running: name => `正在运行：${RUNS[name] || name}。先停止它，才能用其他按钮。`,
   keysDrive: '方向键驱动机器人。',
+  stoppedElsewhere: '已停止，不是从这个页面停止的',
   outcome: (name, outcome) => `${name}：${outcome}`,
   said: text => SENTENCES.reduce((said, [english, chinese]) => said.replace(english, chinese), text),
   run: (name, stopped) => `${RUNS[name] || name}${stopped ? '，已停止' : ''}`,
@@ -54,7 +53,7 @@ export const WORDS = {
   refused: reason => `被拒绝：${reason}。`,
   rejected: {
     token: 'web_view.launch 重新启动过，所以这个浏览器不能再驱动机器人：请打开它打印的地址。',
-    code: '打开的地址已经用过，或者是以前某次启动时打印的，所以这个页面只能看。如果你认识的人都没有用过它，请重新启动 web_view.launch。'},
+    code: '这个地址已经用过，或者不完整，或者是 web_view.launch 以前某次启动时打印的。'},
   invite: '再加一个浏览器', inviteHelp: '生成一个地址，让另一个浏览器也能驱动机器人',
   invited: address => `给另一个浏览器的地址，打开以后它就能驱动机器人：${address}`,
   realRobot: '这是真实的机器人', cancel: '取消', allow: '允许运动',

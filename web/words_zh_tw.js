@@ -14,10 +14,8 @@ const SENTENCES = [
     '按下「停止」$1 s 以後沒有收到里程計：機器人可能還在動。'],
   [/^a run is in progress: stop it first$/, '正在執行，請先停止'],
   [/^(.+) is driving the robot: stop it first$/, '$1 正在驅動機器人，請先停止它'],
-  [/^this page can only watch: open the complete address that the web view printed$/,
-    '這個頁面只能看：請開啟 web_view.launch 列印的完整地址'],
-  [/^Stop needs the token here: open the complete address that the web view printed$/,
-    '在這裡停止機器人也需要權限：請開啟 web_view.launch 列印的完整地址']];
+  [/^this page can only watch$/, '這個頁面只能看'],
+  [/^Stop needs the token here, and this page has none$/, '在這裡停止機器人也需要權限，這個頁面沒有']];
 
 export const WORDS = {
   // header
@@ -37,12 +35,13 @@ export const WORDS = {
   missed: (distance, angle, known) => `${known ? '' : '按照里程計，'}離起點 ${distance} m，航向差 ${angle}°`,
   needsFilter: method => `「${method}」需要濾波器：roslaunch rbx1_bringup odom_ekf.launch。`,
   noReset: '只有模擬的機器人才能復位。',
-  noToken: '這個頁面只能看，也能停止機器人。要驅動機器人，請開啟 web_view.launch 列印的完整地址，或者在能驅動機器人的頁面裡要一個地址。',
+  noToken: '這個頁面只能看。要驅動機器人，請要一個地址：在能驅動機器人的頁面裡，「再加一個瀏覽器」會生成一個。',
   masterSilent: 'ROS 節點管理器（master）沒有應答。請重新啟動 roscore、底盤和 web_view.launch。',
   masterRestarted: 'ROS 節點管理器（master）重新啟動過。請重新啟動 web_view.launch。',
   noBase: '正在等待底盤。啟動一個：roslaunch rbx1_bringup fake_turtlebot.launch',
   running: name => `正在執行：${RUNS[name] || name}。先停止它，才能用其他按鈕。`,
   keysDrive: '方向鍵驅動機器人。',
+  stoppedElsewhere: '已停止，不是從這個頁面停止的',
   outcome: (name, outcome) => `${name}：${outcome}`,
   said: text => SENTENCES.reduce((said, [english, chinese]) => said.replace(english, chinese), text),
   run: (name, stopped) => `${RUNS[name] || name}${stopped ? '，已停止' : ''}`,
@@ -54,7 +53,7 @@ export const WORDS = {
   refused: reason => `被拒絕：${reason}。`,
   rejected: {
     token: 'web_view.launch 重新啟動過，所以這個瀏覽器不能再驅動機器人：請開啟它列印的地址。',
-    code: '開啟的地址已經用過，或者是以前某次啟動時列印的，所以這個頁面只能看。如果你認識的人都沒有用過它，請重新啟動 web_view.launch。'},
+    code: '這個地址已經用過，或者不完整，或者是 web_view.launch 以前某次啟動時列印的。'},
   invite: '再加一個瀏覽器', inviteHelp: '生成一個地址，讓另一個瀏覽器也能驅動機器人',
   invited: address => `給另一個瀏覽器的地址，開啟以後它就能驅動機器人：${address}`,
   realRobot: '這是真實的機器人', cancel: '取消', allow: '允許運動',
@@ -107,4 +106,4 @@ export const WORDS = {
   onlyScripts: '在這個頁面裡，只有腳本驅動機器人',
   tooLong: seconds => `這次執行在 ${seconds} s 內沒有算完，所以腳本被結束了。`};
 
-// script/traditional.py: 9d6ca729
+// script/traditional.py: c681eaee

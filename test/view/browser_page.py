@@ -138,6 +138,12 @@ class TestBrowserPage(PageTest):
         self.assertFalse(rospy.has_param('/out_and_back/odom_frame'), 'it would affect the next run in a terminal')
         self.assertLess(self.odom.position()[0], 0.9)   # before the end of the first leg
 
+    def test_a_run_that_another_page_stops(self):
+        self.page.run('odometry')
+        support.wait_for(lambda: self.odom.position()[0] > 0.05, 'the robot to drive')
+        self.page.send(type='stop', number=1)       # this page does not know of it
+        self.page.wait_for_text('run-state', 'With odometry: stopped, not from this page')
+
     def test_escape_stops_a_script_of_a_terminal(self):
         script = support.out_and_back()
         self.odom.wait_for_twist(SPEED)

@@ -89,6 +89,17 @@ class TestBrowserTeacher(support.Case):
         self.wait_for(1, 'answer', 'The robot was stationary')
         support.wait_for(lambda: not self.driver.find_elements('css selector', '.alarm'), 'no alarm')
 
+        # a seat whose view exits is started again
+        os.kill(pid, signal.SIGKILL)
+        self.process.wait_for_line('seat 1: started again')
+        self.wait_for(1, 'state', '^Idle$')
+
+    def test_an_address_for_another_browser_of_a_learner(self):
+        self.page.click('.seat:nth-child(2) .invite')
+        self.page.wait_for_text('notice', rf'Seat 2: .*:{self.pages + 2}/#\S{{20,}}$')
+        with closing(WebClient(self.pages + 2, '', code=self.page.text('notice').rpartition('#')[2])) as learner:
+            self.assertTrue(learner.wait_for('welcome')['trusted'])
+
     def test_the_browser_keeps_the_token(self):
         self.driver.refresh()
         self.page.wait_for_text('connection', f'{SEATS} of {SEATS}')

@@ -49,8 +49,8 @@ class Access:
 def without_token(message: Request | InviteRequest, stop_needs_token: bool) -> str:
     """Return why a request of a browser without the token is rejected, or ''. Without it, a browser may only stop."""
     if not isinstance(message, StopRequest):
-        return 'this page can only watch: open the complete address that the web view printed'
-    return 'Stop needs the token here: open the complete address that the web view printed' if stop_needs_token else ''
+        return 'this page can only watch'
+    return 'Stop needs the token here, and this page has none' if stop_needs_token else ''
 
 
 def make_token() -> str:

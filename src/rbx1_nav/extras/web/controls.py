@@ -10,7 +10,7 @@ from rbx1_nav.extras.web.hand_drive import HandDrive
 from rbx1_nav.extras.web.page_messages import (
     ChooseRequest, DriveRequest, HandRequest, Request, RunRequest, StopRequest)
 from rbx1_nav.extras.web.page_runs import Runs
-from rbx1_nav.extras.web.state import PageState
+from rbx1_nav.extras.web.state import REST, PageState
 from rbx1_nav.extras.web.system import System
 
 BUSY = 'a run is in progress: stop it first'
@@ -20,7 +20,6 @@ MAX_AGE = 2.0       # s: age of the last frame that the browser had received whe
 NOT_CONFIRMED = 'a real robot moves only after you have confirmed that its path is free'
 LIMIT = 3.0         # s: time for the robot to come to rest; then the answer is that it has not
 FRESH = 1.0         # s: older odometry does not tell whether the robot moves; a base that hangs sends none
-REST = 0.005        # m/s, rad/s: encoder noise of a robot at rest
 
 
 class Answer(NamedTuple):

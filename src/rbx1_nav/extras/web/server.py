@@ -8,7 +8,6 @@ import time
 from typing import Any, Iterable, Mapping, Protocol, Sequence, cast
 
 from tornado.httpserver import HTTPServer
-from tornado.ioloop import PeriodicCallback
 from tornado.netutil import bind_sockets
 from tornado.web import Application, StaticFileHandler
 from tornado.websocket import WebSocketHandler
@@ -16,7 +15,7 @@ from tornado.websocket import WebSocketHandler
 from rbx1_nav.extras.web.access import accepted_hosts
 from rbx1_nav.extras.web.page_messages import MAX_MESSAGE
 
-FRAME_PERIOD = 50       # ms
+FRAME_PERIOD, UNSEEN_PERIOD = 0.05, 0.1     # s: with and without a browser
 IDLE_TIMEOUT = 5.0      # s in which a request must arrive; s after which an unused connection is closed
 PING_PERIOD = 10.0      # s: a browser that does not answer three pings is disconnected
 MAX_HEADER = 8192       # bytes
@@ -138,20 +137,23 @@ class PageServer:
         server = HTTPServer(self.application, max_header_size=MAX_HEADER, max_body_size=MAX_HEADER,
                             idle_connection_timeout=IDLE_TIMEOUT, body_timeout=IDLE_TIMEOUT)
         server.add_sockets(self.sockets)
-        frames = PeriodicCallback(self._send_frames, FRAME_PERIOD)
-        if not self.application.settings['seat_ports']:     # otherwise, the page gets its frames from the seats
-            frames.start()
         self.ready.set()
+        frames = None
+        if not self.application.settings['seat_ports']:     # otherwise, the page gets its frames from the seats
+            frames = asyncio.ensure_future(self._send_frames())
         await self.end.wait()
-        frames.stop()
+        if frames:
+            frames.cancel()
         server.stop()
         for socket in [socket for each in self.connections for socket in each.browsers]:
             socket.close(1001, 'the web view has shut down')
         await asyncio.sleep(0.05)   # until the close frames have been sent
 
-    def _send_frames(self) -> None:
-        for each in self.connections:
-            each.send_frames()
+    async def _send_frames(self) -> None:
+        while True:
+            for each in self.connections:
+                each.send_frames()
+            await asyncio.sleep(FRAME_PERIOD if any(each.browsers for each in self.connections) else UNSEEN_PERIOD)
 
     def stop(self) -> None:
         """Close the connections and stop the thread; wait for at most 0.5 s."""

@@ -13,6 +13,7 @@ BY_HAND = 'by hand'   # sender of the commands of this node
 SPEEDS = ('commanded', 'reported', 'true')
 JUMP = 0.5          # m between two odometry messages: the robot was moved by hand or reset, or it is another robot
 BACK = 0.5          # s by which the stamps go back if simulated time has restarted
+REST = 0.005        # m/s, rad/s: encoder noise of a robot at rest
 MOVED = 0.02, 0.05  # m, rad: a run that never left its start is not stored as the previous run
 RESET_DELAY = 0.5   # s: largest delay between the message about a reset and the odometry after it, in either order
 SILENCE = 3.0       # s without a message after which a pose is no longer shown

@@ -5,9 +5,9 @@ The load from each topic is bounded.
 from __future__ import annotations
 
 from collections import deque
-from threading import Lock, Thread
+from threading import Event, Lock, Thread
 import time
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
@@ -23,12 +23,14 @@ from rbx1_nav.base.running_bases import private_namespace
 from rbx1_nav.base.surfaces import known_surfaces
 from rbx1_nav.extras.web.choices import DEFAULTS, SCRIPTS
 from rbx1_nav.extras.web.hand_drive import COMMANDS
-from rbx1_nav.extras.web.state import BY_HAND, PageState, PoseAndSpeed
+from rbx1_nav.extras.web.state import BY_HAND, REST, PageState, PoseAndSpeed
 from rbx1_nav.node import life, resources
 from rbx1_nav.node.master import Server, call
 
 TOPICS = {'truth': 'ground_truth', 'odometry': 'odom', 'estimate': 'odom_ekf'}
 MIN_PERIOD = 0.02   # s: only the latest of the messages that arrive in this time is read
+REST_PERIOD = 0.1   # s: further time between the poses of a robot that rests; until a command, which moves it, arrives
+REST_TIME = 1.0     # s without a motion or a command to move, after which the robot rests
 COMMAND_PERIOD = 0.01   # s; short, because a driving script detects a subscriber that does not read
 BUFFER = 2 ** 20    # bytes: more than arrives in MIN_PERIOD at 50 times real time
 PERIOD = 2.0        # s
@@ -64,13 +66,15 @@ class System:
         self.shutting_down: set[str] = set()    # nodes that have not answered yet
         self.stopped: set[str] = set()
         self.silent: set[str] = set()
+        self.moving = Event()
+        self.moved = 0.0        # s, monotonic clock
         self.thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
         """Subscribe to the topics, and start the thread."""
         for source, topic in TOPICS.items():
             subscribe(f'{self.namespace}{topic}', Odometry, self.on_odometry, source)
-        subscribe(f'{self.namespace}{COMMANDS}', Twist, self.on_command)
+        self.commands = subscribe(f'{self.namespace}{COMMANDS}', Twist, self.on_command)
         subscribe(f'{self.namespace}reset_odometry', Empty, self.on_reset)
         subscribe('/diagnostics', DiagnosticArray, self.on_diagnostics, queue_size=5)
         # the log of all nodes, over one connection to rosout instead of one to each node
@@ -91,12 +95,24 @@ class System:
         self.state.move(source, PoseAndSpeed(
             message.header.stamp.to_sec(), (pose.position.x, pose.position.y, messages.yaw_of(pose.orientation)),
             twist.linear.x, twist.angular.z), time.monotonic())
+        self._note_motion(max(abs(twist.linear.x), abs(twist.angular.z)) > REST)
         time.sleep(MIN_PERIOD)
+        self.moving.wait(REST_PERIOD)
+
+    def _note_motion(self, moves: bool) -> None:
+        now = time.monotonic()
+        if moves:
+            self.moved = now
+            self.moving.set()
+        elif now - self.moved > REST_TIME:
+            self.moving.clear()
 
     def on_command(self, twist: Twist) -> None:
         sender = twist._connection_header['callerid']
         self.state.command(twist.linear.x, twist.angular.z, BY_HAND if sender == rospy.get_name() else sender,
                            time.monotonic())
+        if twist.linear.x or twist.angular.z:
+            self._note_motion(True)
         time.sleep(COMMAND_PERIOD)
 
     def on_reset(self, _: Empty) -> None:
@@ -151,16 +167,17 @@ class System:
         values: dict[str, Any] = {'surface': '', 'seed': '', 'simulated_time': False}
         if base:
             values['simulated_time'] = bool(master.param('/use_sim_time', False))
-        if self.simulated and self.truth:
+        if not (self.simulated and self.truth):
+            self.drawn = None
+        elif self.drawn and self.truth == base:     # the base itself has reported them
+            del values['surface'], values['seed']
+        else:
             private = private_namespace(self.truth, odom, master)
             values['surface'] = str(master.param(f'{private}/surface', 'ideal')).rpartition('/')[2]
             values['seed'] = str(master.param(f'{private}/seed', 'random'))
-            if self.drawn and self.truth == base:    # the base itself has reported them
-                del values['surface'], values['seed']
-        else:
-            self.drawn = None
+        scripts = master.param(self._of_scripts(''), {})
         for choice, name in SCRIPTS.items():
-            values[choice] = master.param(self._of_scripts(name), DEFAULTS[choice])
+            values[choice] = scripts.get(name, DEFAULTS[choice])
         self.state.set_status(**values)
 
     def _of_scripts(self, name: str) -> str:
@@ -200,29 +217,34 @@ class System:
         Thread(target=self._shut_down_drivers, daemon=True).start()
 
     def _shut_down_drivers(self) -> None:
-        publishers: Any = ()
+        # without the master, those that are connected
+        self._shut_down({each.callerid_pub: each.endpoint_id for each in self.commands.impl.connections})
         try:
             publishers, _, _ = call(rosgraph.get_master_uri(), 'getSystemState')
+            topic = rospy.resolve_name(f'{self.namespace}{COMMANDS}')
+            self._shut_down(dict.fromkeys(dict(publishers).get(topic, ())))
         except Exception as error:
-            rospy.logwarn_throttle(5, f'The master does not answer, so Stop may not have reached other driving nodes: '
-                                      f'{error}')
             with self.lock:
                 self.silent.add('the master')
-        topic = rospy.resolve_name(f'{self.namespace}{COMMANDS}')
-        names = set(dict(publishers).get(topic, ())) - {rospy.get_name()}
-        with self.lock:
-            names -= self.shutting_down
-            self.shutting_down |= names
+            rospy.logwarn_throttle(5, f'The master does not answer, so Stop may not have reached other driving nodes: '
+                                      f'{error}')
+        finally:
             self.searching = False
-        for name in names:      # a node that hangs must not delay the others
-            Thread(target=self._shut_down, args=(name,), daemon=True).start()
 
-    def _shut_down(self, node: str) -> None:
+    def _shut_down(self, addresses: Mapping[str, str | None]) -> None:
+        """Shut down nodes. addresses: XMLRPC addresses by the names of the nodes; None: the master knows it."""
+        with self.lock:
+            names = set(addresses) - self.shutting_down - {rospy.get_name()}
+            self.shutting_down |= names
+        for name in names:      # a node that hangs must not delay the others
+            Thread(target=self._shut_down_node, args=(name, addresses[name]), daemon=True).start()
+
+    def _shut_down_node(self, node: str, address: str | None) -> None:
         try:
-            uri = call(rosgraph.get_master_uri(), 'lookupNode', node)
-            if not uri:
+            address = address or call(rosgraph.get_master_uri(), 'lookupNode', node)
+            if not address:
                 raise KeyError(node)
-            call(uri, 'shutdown', 'stopped from the browser')
+            call(address, 'shutdown', 'stopped from the browser')
             answered = self.stopped
         except (ConnectionError, KeyError):     # the process of the node has exited, so it no longer drives
             answered = set()
@@ -233,9 +255,11 @@ class System:
             answered.add(node)
 
     def take_shut_down(self) -> tuple[list[str], list[str]]:
-        """Return the nodes that were shut down since the last call, and those that did not answer."""
+        """Return the nodes that were shut down since the last call, and those that did not answer, at least once: rospy
+        answers a second request at once, although it waits for the master before the node stops."""
         with self.lock:
-            found = sorted(self.stopped), sorted((self.silent | self.shutting_down) - self.stopped)
+            silent = self.silent | self.shutting_down
+            found = sorted(self.stopped - silent), sorted(silent)
             self.stopped.clear()
             self.silent.clear()
         return found
