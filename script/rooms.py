@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws in docs/design.md which rooms import which. A room is a folder of src/rbx1_nav, or nodes/.
+"""Draws in CONTRIBUTING.md which rooms import which. A room is a folder of src/rbx1_nav, or nodes/.
 
 An arrow to a room to which other arrows lead is left out.
 """
@@ -10,7 +10,7 @@ import re
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 SOURCE = os.path.join(ROOT, 'src')
-PAGE = os.path.join(ROOT, 'docs', 'design.md')
+PAGE = os.path.join(ROOT, 'CONTRIBUTING.md')
 DIAGRAM = re.compile(r'(?m)(?<=^<!-- imports -->\n)\n```mermaid\n(?:.*\n)*?```$')
 
 

@@ -114,7 +114,7 @@ def test_only_the_files_in_the_list_need_ros():
 
 
 def test_a_room_may_import_only_what_it_imports():
-    """So the diagram in docs/design.md, which is made from the imports, shows what ALLOWED permits."""
+    """So the diagram in CONTRIBUTING.md, which is made from the imports, shows what ALLOWED permits."""
     used = {room: set() for room in ALLOWED}
     for path, module, is_package in modules():
         room = room_of(module)

@@ -7,7 +7,7 @@ from pages import markdown
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..', '..'))
 NAME = re.compile(r'(?<![\w.*/{$~-])((?:[\w-]+/)*[\w-]+\.(?:py|md|launch|test|yaml|js))\b')
-PAGES = ['CONTRIBUTING.md', 'docs/design.md', *sorted(f'docs/decisions/{name}' for name in os.listdir(
+PAGES = ['CONTRIBUTING.md', *sorted(f'docs/decisions/{name}' for name in os.listdir(
     os.path.join(ROOT, 'docs', 'decisions')))]
 
 

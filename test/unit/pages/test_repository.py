@@ -21,7 +21,7 @@ def test_blocks(page):
 
 
 @pytest.mark.parametrize('page', [page for page in markdown.files(ROOT, '.md')
-                                  if page.startswith(('CONTRIBUTING', 'docs/design', 'docs/decisions/'))])
+                                  if page.startswith(('CONTRIBUTING', 'docs/decisions/'))])
 def test_a_module_that_a_page_for_maintainers_names_exists(page):
     names = re.findall(r'`((?:[a-z_]+/)+[a-z_]+\.(?:py|js|css|launch))`', markdown.read(ROOT, page))
     places = [ROOT, os.path.join(ROOT, 'src', 'rbx1_nav')]
