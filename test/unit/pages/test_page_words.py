@@ -51,6 +51,19 @@ def test_the_chinese_words_have_the_names_of_the_english_ones():
     assert keys('words_zh.js') == keys('words_zh_tw.js') == keys('words_en.js')
 
 
+def test_the_sentences_that_are_translated_are_sentences_of_the_server():
+    root, files = os.path.join(WEB, '..'), [os.path.join(WEB, '..', 'launch', 'web_view.launch')]
+    for folder in ('web', 'page'):
+        folder = os.path.join(root, 'src', 'rbx1_nav', 'extras', folder)
+        files += [os.path.join(folder, name) for name in os.listdir(folder) if name.endswith('.py')]
+    sources = ''.join(map(read, files))
+    sentences = re.findall(r'\[/\^(.*?)\$?/, ', read('words_zh.js'))
+    assert len(sentences) > 5
+    for sentence in sentences:
+        for part in re.split(r'\(.*?\)', sentence):
+            assert part in sources, sentence
+
+
 def test_no_other_file_has_sentences():
     for name in os.listdir(WEB):
         if name.endswith('.js') and not name.startswith('words_'):
