@@ -10,7 +10,8 @@ from nav_msgs.msg import Odometry
 
 def drive():
     """Run the driver, and return the robot's true pose and velocity afterwards."""
-    rospy.init_node('one_metre')
+    # disable_signals: rospy would not interrupt subprocess.run when roslaunch stops this node
+    rospy.init_node('one_metre', disable_signals=True)
     # the base is ready when it publishes
     rospy.wait_for_message('/odom', Odometry)
     # returns when the driver has exited; raises CalledProcessError if its status is not 0

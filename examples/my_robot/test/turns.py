@@ -3,7 +3,6 @@
 import subprocess
 import unittest
 
-import roslib.packages
 import rospy
 import rostest
 from nav_msgs.msg import Odometry
@@ -24,13 +23,12 @@ def find_turns():
         last[:] = x, speed
     # no queue size: no message is left out
     rospy.Subscriber('/ground_truth', Odometry, on_pose)
-    # not rosrun, which would not pass on the signal
-    driver = subprocess.Popen(roslib.packages.find_node('my_robot', 'patrol.py')[0])
+    driver = subprocess.Popen(['rosrun', 'my_robot', 'patrol.py'])
     try:
         while len(turns) < TURNS and driver.poll() is None:
             rospy.sleep(0.1)
     finally:
-        driver.terminate()
+        driver.kill()       # a driver may ignore any other signal
         driver.wait()
     return turns[:TURNS]
 
