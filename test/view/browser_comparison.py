@@ -70,7 +70,7 @@ class TestBrowserComparison(PageTest):
         def chosen():
             return self.driver.execute_script("""
                 const input = document.querySelector(`#choices [name=${arguments[0]}]`);
-                if (input.disabled) { return false; }
+                if (!input || input.disabled) { return false; }
                 input.value = arguments[1];
                 input.onchange();
                 return true""", name, value)
