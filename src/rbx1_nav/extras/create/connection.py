@@ -105,7 +105,7 @@ class Supervisor:
             self.failures = 0
         elif self.failures > ATTEMPTS_BEFORE_LOG:
             reasons.append(f'it reports mode {reported} after it was asked for {protocol.MODE_NAMES[self.wanted]} '
-                           f'mode: expected {self.wanted + self.plus_one}, or oi_mode_workaround:='
+                           f'mode: expected {self.wanted + self.plus_one}, or the parameter oi_mode_workaround: '
                            f'{str(not self.plus_one).lower()}')
         explained, self.reason = self.reason, ', '.join(reasons)
         if self.reason not in ('', explained):

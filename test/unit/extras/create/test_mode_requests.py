@@ -137,8 +137,8 @@ def test_a_wrong_workaround_is_named_and_the_robot_is_not_driven(robot_type, mod
                      oi_mode_workaround=not plus_one)
     assert driven.log[1:] == [
         'The robot cannot be driven: it reports mode %d after it was asked for %s mode: expected %d, or '
-        'oi_mode_workaround:=%s' % (mode + plus_one, protocol.MODE_NAMES[mode], mode + 1 - plus_one,
-                                    str(plus_one).lower())]
+        'the parameter oi_mode_workaround: %s' % (mode + plus_one, protocol.MODE_NAMES[mode], mode + 1 - plus_one,
+                                                  str(plus_one).lower())]
     # the node subscribes to commands, and refuses them with the reason
     assert driven.driver.is_ready
     driven.drive(0.2, 0, 1)
