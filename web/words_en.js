@@ -20,7 +20,7 @@ export const WORDS = {
     `${known ? 'missed' : 'by its odometry, missed'} the start by ${distance} m and ${angle}°`,
   needsFilter: method => `${method} needs the filter: roslaunch rbx1_bringup odom_ekf.launch.`,
   noReset: 'Only a simulated robot can be reset.',
-  noToken: 'This page can only watch. To drive, ask for an address: in a page that can drive, "Another browser" makes one.',
+  noToken: 'This page cannot drive the robot. To drive, ask for an address: in a page that can drive, "Another browser" makes one.',
   masterSilent: 'The ROS master does not answer. Start roscore, the base and the web view again.',
   masterRestarted: 'The ROS master was restarted. Start the web view again.',
   noBase: 'Waiting for a base. Start one: roslaunch rbx1_bringup fake_turtlebot.launch',

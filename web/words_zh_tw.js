@@ -16,7 +16,7 @@ const SENTENCES = [
     '按下「停止」$1 s 以後沒有收到里程計：機器人可能還在動。'],
   [/^a run is in progress: stop it first$/, '正在執行，請先停止'],
   [/^(.+) is driving the robot: stop it first$/, '$1 正在驅動機器人，請先停止它'],
-  [/^this page can only watch$/, '這個頁面只能看'],
+  [/^this page cannot drive the robot$/, '這個頁面不能驅動機器人'],
   [/^another browser is driving the robot, or driving by hand is off$/, '另一個瀏覽器正在驅動機器人，或者手動駕駛沒有開啟'],
   [/^a real robot moves only after you have confirmed that its path is free$/, '要先確認前方沒有障礙，真實的機器人才會動'],
   [/^the request was more than 2 s old, so nothing was started: try again$/, '請求晚到了 2 s 以上，所以什麼也沒有啟動，請再試一次'],
@@ -40,7 +40,7 @@ export const WORDS = {
   missed: (distance, angle, known) => `${known ? '' : '按照里程計，'}離起點 ${distance} m，航向差 ${angle}°`,
   needsFilter: method => `「${method}」需要濾波器：roslaunch rbx1_bringup odom_ekf.launch。`,
   noReset: '只有模擬的機器人才能重設。',
-  noToken: '這個頁面只能看。要驅動機器人，需要一個網址：在能驅動機器人的頁面裡，按「再加一個瀏覽器」就會產生。',
+  noToken: '這個頁面不能驅動機器人。要驅動，需要一個網址：在能驅動機器人的頁面裡，按「再加一個瀏覽器」就會產生。',
   masterSilent: 'ROS 節點管理器（master）沒有回應。請重新啟動 roscore、底盤和 web_view.launch。',
   masterRestarted: 'ROS 節點管理器（master）重新啟動過。請重新啟動 web_view.launch。',
   noBase: '正在等待底盤。啟動一個：roslaunch rbx1_bringup fake_turtlebot.launch',
@@ -111,4 +111,4 @@ export const WORDS = {
   onlyScripts: '在這個頁面裡，只有腳本驅動機器人',
   tooLong: seconds => `這次執行在 ${seconds} s 內沒有算完，所以腳本被終止了。`};
 
-// script/traditional.py: d8e8e6ee
+// script/traditional.py: d935e79e

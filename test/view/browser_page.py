@@ -258,7 +258,7 @@ class TestBrowserPage(PageTest):
         for message in (dict(type='run', method='timed'), dict(type='hand', on=True), dict(type='drive', forward=1)):
             self.page.driver.execute_script('document.getElementById("notice").textContent = ""')
             self.page.send(**message)
-            self.page.wait_for_text('notice', 'Refused: this page can only watch')
+            self.page.wait_for_text('notice', 'Refused: this page cannot drive the robot')
         self.assertEqual(self.odom.position(), (0, 0))
         self.assertTrue(self.page.find('#stop').is_enabled())
 

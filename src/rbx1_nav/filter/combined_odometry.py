@@ -154,7 +154,7 @@ class CombinedOdometry:
 
     def _arrive(self, sensor: str, now: int, stamp: int) -> int | None:
         """Check and store a stamp; return the previous stamp, or None."""
-        back = now < self.arrivals.now and self.arrivals.notice_step_back(now)
+        back = self.arrivals.notice_step_back(now)
         if back:
             self.restart(f'The clock jumped back by {back / SECOND:.3f} s')
         return self.arrivals.add(sensor, now, stamp)

@@ -115,7 +115,7 @@ class Filter(PoseErrors):
         bias, slip, curvature = self.error[3:]
         H = time, -wheels, forward
         difference = measured - bias * time - wheels * (1 - slip) - curvature * forward
-        known = 0.0
+        known = 0.0     # not by sum(), which rounds differently from Python 3.12 on
         for row, h in zip(self.P[3:], H):
             for p, other in zip(row[3:], H):
                 known += p * h * other

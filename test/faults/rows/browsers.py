@@ -101,7 +101,7 @@ def no_token(row, view):
     assert not client.wait_for('welcome')['trusted']
     for message in row.random.choices(ATTEMPTS, k=20):
         client.send(**message)
-        assert 'can only watch' in client.wait_for('refused')['reason']
+        assert 'cannot drive' in client.wait_for('refused')['reason']
     client.close()
     assert view.odom.position() == (0, 0)
 

@@ -2,7 +2,7 @@
 the same path."""
 from rows.any_driver import check_all
 
-FAULT = ('25 kinds of drivers on the clock: rospy.Rate, rospy.sleep, rospy.Timer, callbacks, transforms, threads, '
+FAULT = ('27 kinds of drivers on the clock: rospy.Rate, rospy.sleep, rospy.Timer, callbacks, transforms, threads, '
          'parameters, several publishers, at 5 to 50 Hz, at real_time_factor 20 with strict; in half of the runs '
          'beside six busy loops')
 PROMISE = 'the end pose of a driver is the same in every run to the last bit, and the base names no driver'

@@ -49,7 +49,7 @@ class Access:
 def without_token(message: Request | InviteRequest, stop_needs_token: bool) -> str:
     """Return why a request of a browser without the token is rejected, or ''. Without it, a browser may only stop."""
     if not isinstance(message, StopRequest):
-        return 'this page can only watch'
+        return 'this page cannot drive the robot'
     return 'Stop needs the token here, and this page has none' if stop_needs_token else ''
 
 

@@ -8,6 +8,7 @@ import time
 from typing import Any, Iterable, Mapping, Protocol, Sequence, cast
 
 from tornado.httpserver import HTTPServer
+from tornado.ioloop import PeriodicCallback
 from tornado.netutil import bind_sockets
 from tornado.web import Application, StaticFileHandler
 from tornado.websocket import WebSocketHandler
@@ -15,7 +16,7 @@ from tornado.websocket import WebSocketHandler
 from rbx1_nav.extras.web.access import accepted_hosts
 from rbx1_nav.extras.web.page_messages import MAX_MESSAGE
 
-FRAME_PERIOD, UNSEEN_PERIOD = 0.05, 0.1     # s: with and without a browser
+FRAME_PERIOD, UNSEEN_PERIOD = 50, 100       # ms: with and without a browser
 IDLE_TIMEOUT = 5.0      # s in which a request must arrive; s after which an unused connection is closed
 PING_PERIOD = 10.0      # s: a browser that does not answer three pings is disconnected
 MAX_HEADER = 8192       # bytes
@@ -138,22 +139,21 @@ class PageServer:
                             idle_connection_timeout=IDLE_TIMEOUT, body_timeout=IDLE_TIMEOUT)
         server.add_sockets(self.sockets)
         self.ready.set()
-        frames = None
+        # unlike a task, it continues after an error
+        self.frames = PeriodicCallback(self._send_frames, FRAME_PERIOD)
         if not self.application.settings['seat_ports']:     # otherwise, the page gets its frames from the seats
-            frames = asyncio.ensure_future(self._send_frames())
+            self.frames.start()
         await self.end.wait()
-        if frames:
-            frames.cancel()
+        self.frames.stop()
         server.stop()
         for socket in [socket for each in self.connections for socket in each.browsers]:
             socket.close(1001, 'the web view has shut down')
         await asyncio.sleep(0.05)   # until the close frames have been sent
 
-    async def _send_frames(self) -> None:
-        while True:
-            for each in self.connections:
-                each.send_frames()
-            await asyncio.sleep(FRAME_PERIOD if any(each.browsers for each in self.connections) else UNSEEN_PERIOD)
+    def _send_frames(self) -> None:
+        self.frames.callback_time = FRAME_PERIOD if any(each.browsers for each in self.connections) else UNSEEN_PERIOD
+        for each in self.connections:
+            each.send_frames()
 
     def stop(self) -> None:
         """Close the connections and stop the thread; wait for at most 0.5 s."""

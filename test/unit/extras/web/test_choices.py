@@ -62,7 +62,7 @@ def test_a_distance_does_not(view):
 def test_what_is_refused(view):
     assert 'cannot be chosen' in refusals(view, name='seed', value='7')[0]
     assert 'surface: expected one of ideal, sand' in refusals(view, name='surface', value='snow')[0]
-    assert 'only watch' in refusals(view, '', name='surface', value='sand')[0]
+    assert 'cannot drive' in refusals(view, '', name='surface', value='sand')[0]
     view.runs.busy = True
     assert 'in progress' in refusals(view, name='surface', value='sand')[0]
     assert not view.system.calls

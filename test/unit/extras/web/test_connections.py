@@ -146,7 +146,7 @@ def make_view():
 def test_without_the_token_nothing_moves(view, message, token):
     socket = view.connect(token)
     view.send(socket, **message)
-    assert socket.kinds == ['welcome', 'refused'] and 'can only watch' in socket.messages[1]['reason']
+    assert socket.kinds == ['welcome', 'refused'] and 'cannot drive' in socket.messages[1]['reason']
     assert not (view.hand.calls or view.runs.calls or view.system.calls or view.hand.drivers)
     assert socket.messages[0]['trusted'] is False and socket.messages[0]['token'] == ''
     assert socket.messages[0]['rejected'] == ('token' if token else '')

@@ -158,3 +158,18 @@ def test_a_page_that_sends_as_fast_as_a_user_can_is_not_a_flood(server):
         connection.close()
     asyncio.run(talk())
     assert not list(server.connections)[0].flooding
+
+
+def test_an_error_does_not_end_the_frames():
+    connections, calls = Connections(), []
+
+    def send_frames():
+        calls.append(len(calls))
+        raise ValueError('expected: it is logged')
+    connections.send_frames = send_frames
+    server = PageServer(FOLDER, {'/socket': connections}, 'localhost', 0)
+    server.start()
+    try:
+        wait_for(lambda: len(calls) > 2)
+    finally:
+        server.stop()
