@@ -15,7 +15,7 @@ FULL, SHORT = 60, 28     # minutes; fewer are too short for eight drives
 ROOT = ALONE = False
 
 WARM_UP = 4         # runs: later, nothing connects for the first time
-GROWTH = 2048       # kB that the memory may fluctuate by
+GROWTH = 4096       # kB: over 160 drives, what the allocator keeps varied by 3 MB and did not grow
 DISTANCE, TURN = 10.0, 3.14     # m and rad of a motion: whole ticks
 
 
