@@ -1,7 +1,7 @@
 """Readings of a robot's sensors, simulated or real, and their uncertainties: a gyro, and odometry with a covariance."""
 from __future__ import annotations
 
-from math import cos, sin
+from math import ceil, cos, sin
 from typing import NamedTuple
 
 from rbx1_nav.base.kinematics import Odometry, Pose
@@ -10,6 +10,7 @@ from rbx1_nav.base.units import Covariance
 MEASURED = 1e-6         # variance of a good measurement, m^2 or rad^2 (or per s^2): 1 mm, 1 mrad
 MIN_VARIANCE = 1e-12    # smallest variance that a sensor may report, same units: 1 um, 1 urad
 HELD = 0.3      # m: path over which a rounded heading stays constant while the robot drives straight ahead
+STEP = 0.1, 0.2     # m, rad: longest step whose errors may be taken as those of its middle
 
 
 class Uncertainty(NamedTuple):
@@ -90,20 +91,27 @@ class UncertainOdometry:
         """
         distance, angle = abs(travel.distance), abs(travel.angle)
         length, turn = self.errors.variances(distance, angle)
+        turn += travel.angle_variance
         unit = (12 * self.rounding[1]) ** 0.5
         path = HELD if angle * HELD <= unit * distance else unit * distance / angle
-        turn += travel.angle_variance
-        # the chord of an arc is shorter than the arc by about distance * angle^2 / 24
-        chord = (distance * angle / 12) ** 2 * (2 * self.rounding[1] + turn)
-        return (travel.distance_variance + length + chord, self.rounding[1] * distance * max(path, distance / 2), turn)
+        return travel.distance_variance + length, self.rounding[1] * distance * max(path, distance / 2), turn
 
     def move(self, travel: Travel) -> None:
-        """Add a Travel."""
-        distance, angle = travel.distance, travel.angle
-        along, aside, turn = self._variances(travel)
+        """Add a Travel, which may be long: that of a robot that has not answered."""
+        distance, angle, (along, aside, turn) = travel.distance, travel.angle, self._variances(travel)
         if not (distance or angle or along or turn):
             return
-        middle = self.odometry.yaw + angle / 2
+        steps = ceil(max(abs(distance) / STEP[0], abs(angle) / STEP[1])) or 1
+        for number in range(steps):
+            self._add_errors(self.odometry.yaw + angle * (number + 0.5) / steps, distance / steps, angle / steps,
+                             along / steps, aside / steps, turn / steps)
+        self.odometry.move(distance, angle)
+
+    def _add_errors(self, middle: float, distance: float, angle: float, along: float, aside: float, turn: float
+                    ) -> None:
+        """Add the errors of a step. middle: heading (rad) in its middle; along, aside, turn: see _variances()."""
+        # the chord of an arc is shorter than the arc by about distance * angle^2 / 24
+        along += (distance * angle / 12) ** 2 * (2 * self.rounding[1] + turn)
         c, s = cos(middle), sin(middle)
         # J C J' + K V K', with the Jacobians of the new pose with respect to the old pose and to the travel. This is
         # written out because numpy needs six times as long for matrices this small, and this runs at each reading
@@ -115,4 +123,3 @@ class UncertainOdometry:
         self.x_yaw += (self.yaw_yaw + turn / 2) * x
         self.y_yaw += (self.yaw_yaw + turn / 2) * y
         self.yaw_yaw += turn
-        self.odometry.move(distance, angle)

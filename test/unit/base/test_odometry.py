@@ -21,7 +21,7 @@ class Travel(NamedTuple):
 
 
 # a heading that is counted in whole units also stays the same over several short steps: small angles
-travels = st.lists(st.builds(Travel, st.floats(-0.5, 0.5), st.floats(-1, 1) | st.floats(-0.02, 0.02),
+travels = st.lists(st.builds(Travel, st.floats(-0.1, 0.1), st.floats(-0.2, 0.2) | st.floats(-0.01, 0.01),
                              st.floats(0, 1e-3), st.floats(0, 1e-3)), min_size=1, max_size=5)
 
 
@@ -51,6 +51,17 @@ def test_each_step_propagates_the_covariance_to_first_order(steps):
         odometry.move(travel)
     rounding = numpy.diag([ROUNDING[0] ** 2, ROUNDING[0] ** 2, ROUNDING[1] ** 2])
     numpy.testing.assert_allclose(odometry.covariance, expected + rounding, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize('distance, angle', [(3, 0), (-1, 0.3), (2, -5), (0.2, 12), (0, 6)])
+def test_a_long_travel_is_as_uncertain_as_many_short_ones(distance, angle):
+    long, short = (UncertainOdometry(0.26, ERRORS, (0.0, 0.0)) for _ in range(2))
+    long.move(Travel(distance, angle, 0.01, 0.02))
+    for _ in range(1000):
+        short.move(Travel(distance / 1000, angle / 1000, 1e-5, 2e-5))
+    # 2 %: the errors of 10 cm or 0.2 rad are taken as those of its middle
+    assert numpy.array(long.covariance) == pytest.approx(numpy.array(short.covariance), rel=0.02, abs=1e-5)
+    assert long.pose == pytest.approx(short.pose)
 
 
 def test_a_robot_at_rest_is_as_certain_as_its_counts():

@@ -67,7 +67,8 @@ def test_the_odometry_knows_how_uncertain_a_gap_is(robot_type, is_pulled, surfac
     seeds = *range(20), 475     # the last: an arc
     errors = [interrupt(robot_type, seed, floor, is_pulled, **params) for seed in seeds]
     assert max(errors) < CHI_SQUARE
-    assert 0.5 < sum(errors) / len(errors) < 6
+    # 3 is right; in a silence on an ideal floor, the next reading of a Create is more exact than it is assumed to be
+    assert 0.4 < sum(errors) / len(errors) < 5
 
 
 def test_a_robot_that_never_answers_is_reported_once():
