@@ -50,14 +50,6 @@ class TestCreateDrives(support.Case):
         robot, _ = self.check('create2', 0.002, 0.002)
         self.assertIsNone(robot.status('Gyro'))
 
-        # a bump stops forward motion only
-        robot.wait_for_motion()
-        robot.switch('bump', True)
-        robot.drive(0.2, 0.0, lambda: not robot.moving, 'the bump to stop the robot')
-        robot.wait_for_status('bumper', 'Sensors')
-        robot.drive(-0.2, 0.0, lambda: robot.moving, 'the robot to go back')
-        robot.switch('bump', False)
-
         # a clean exit
         robot.wait_for_motion()
         count = len(robot.received())

@@ -35,21 +35,6 @@ class TestEmulatedRobot(support.Case):
         self.assertEqual([data for _, data in robot.received()], [command('start'), bytes((145, 0, 100, 255, 156))])
         self.assertTrue(sent + 6 * 10 / 57600 - CLOCKS <= stamp <= received + CLOCKS, (sent, stamp, received))
 
-    def test_a_wrong_baud_rate(self):
-        for robot_type, wrong in ('create', 115200), ('create2', 57600):
-            robot = EmulatedRobot(self, robot_type)
-            robot.open(wrong)
-            robot.port.write(command('start') + command('full') + drive_direct(100, 100))
-            robot.wait_until_read()
-            robot.port.close()
-            robot.open()
-            robot.send(command('start'))
-            # garbage may contain a command, but not this one
-            self.assertNotIn(drive_direct(100, 100), [data for _, data in robot.received()])
-            self.assertFalse(robot.moving)
-            self.assertEqual(robot.read(35), {'mode': PASSIVE})
-            robot.end()
-
     def test_a_cable_that_is_pulled_and_put_back(self):
         robot = self.robot('create2', command('full'), drive_direct(100, 100))
         robot.switch('pull_cable', True)

@@ -90,9 +90,11 @@ def test_nothing_is_published_without_subscribers(node):
 def test_the_line_has_the_rate_of_the_client(node):
     robot = node.make_robot(node.now)
     fake = node.FakeCreate(robot, node.terminal)
-    node.terminal.baud = 19200
-    fake.set_host_baud()
-    assert robot.line.host_baud == 19200
+    for baud, mode in (19200, protocol.OFF), (57600, protocol.PASSIVE):
+        node.terminal.baud, node.terminal.incoming = baud, [protocol.command('start')]
+        for _ in range(20):
+            fake.step()
+        assert robot.mode == mode       # the robot has 57600 baud
     node.terminal.baud = None       # no client
-    fake.set_host_baud()
-    assert robot.line.host_baud == 19200
+    fake.step()
+    assert robot.line.host_baud == 57600

@@ -79,11 +79,8 @@ def test_what_is_logged_when_control_is_gained_and_lost():
     assert robot.log[2:] == ['The robot is in full mode', 'Lost control of the robot: it changed from full to off mode']
 
 
-MODES = pytest.mark.parametrize('mode', [protocol.PASSIVE, protocol.SAFE, protocol.FULL])
-
-
 @BOTH
-@MODES
+@pytest.mark.parametrize('mode', [PASSIVE, SAFE, FULL])
 @pytest.mark.parametrize('plus_one', [False, True])
 def test_with_the_right_workaround_the_robot_is_driven(robot_type, mode, plus_one):
     driven = started(robot_type, mode_plus_one=plus_one, operation_mode=mode,

@@ -40,14 +40,6 @@ def test_nothing_that_is_sent_to_a_robot_that_is_off_resets_it(model):
         assert reset not in data
 
 
-def test_the_queries_of_the_document():
-    """Query list (149): groups 1 and 3, charging sources, mode; group 2, or infrared, buttons (17, 18) and the distance
-    without the angle; analog input. A Create 2 has encoders (43, 44)."""
-    assert sequences.query(sequences.QUERIED) == bytes((149, 6, 1, 3, 34, 35, 2, 33))
-    assert sequences.query(sequences.QUERIED_WITHOUT_ANGLE) == bytes((149, 8, 1, 3, 34, 35, 17, 18, 19, 33))
-    assert sequences.query(sequences.queried(protocol.CREATE_2)[0]) == bytes((149, 8, 1, 3, 34, 35, 17, 18, 43, 44))
-
-
 def test_how_a_robot_is_left():
     create, create_2 = protocol.CREATE, protocol.CREATE_2
     assert sequences.leave(create) == sequences.STOP + bytes((147, 0, 128))

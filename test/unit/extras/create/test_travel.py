@@ -68,11 +68,6 @@ def test_a_corrupted_reading_that_looked_possible_is_taken_back_by_the_third_goo
     assert sum(each.angle for each in total) == pytest.approx((385 - 391) * COUNT / 0.235)
 
 
-def test_the_counters_of_a_create():
-    travel = counter_travel().update(counters(100, -10), 1.0, STILL, 0.0)
-    assert (travel.distance, travel.angle) == (0.1, pytest.approx(radians(-10)))
-
-
 @pytest.mark.parametrize('distance, angle', [(100, 0), (-100, 0), (0, 20), (0, -20)])
 def test_an_implausible_reading_of_a_create(distance, angle):
     assert counter_travel().update(counters(distance, angle), 0.033, STILL, 0.0) is None
