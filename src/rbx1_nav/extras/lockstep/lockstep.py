@@ -11,22 +11,19 @@ from __future__ import annotations
 
 from collections import Counter
 from io import BytesIO
-import select
-from threading import Event, Lock
+from threading import Lock
 from time import monotonic, sleep
-from typing import Any, Callable, Collection, NamedTuple
+from typing import Any, Callable, NamedTuple
 
 from genpy import Message
 from rosgraph_msgs.msg import Clock
 import rospy
-from rospy.exceptions import TransportException
 from rospy.msg import serialize_message
 
-from rbx1_nav.extras.lockstep.processes import Process, find_pollers, polling, still_polling
+from rbx1_nav.extras.lockstep.processes import find_pollers, polling, still_polling
 from rbx1_nav.extras.lockstep.watched_nodes import Watch
 
 NODE_TIMEOUT = 5.0      # s of wall time that the clock waits for a node
-ANSWER_TIME = 3e-4      # s of wall time in which a driver usually answers
 LOOK = 2e-5, 5e-3   # s of wall time between two checks of the processes: at least, at most
 LONGEST_LOOK = 0.1  # s: if it takes longer from one check to the next, the base itself was suspended
 LOOK_LATER = 0.05   # s between two checks per s of waiting so far: a node that is starting needs the processor itself
@@ -36,7 +33,6 @@ HOLD_LATER = 128    # later, the clock is held at each tick whose number is a mu
 HOLD = 1.5          # duration of a hold, in intervals between two commands
 FIRST_HOLD = 0.02   # s of wall time: duration of the first hold, before an interval is known
 COMMANDS = 3        # that a driver on the clock may send after one message; stops do not count
-TEST = 0.005        # s of wall time in which a thread that polls usually runs more than once
 LONG_WAIT = 2.0     # s of wall time: if a wait takes longer, the log says for whom
 LONG = 0.1          # s of wall time: if a wait takes longer, threads that poll may be the reason
 SLEEP = 0.05        # s: the longest sleep between two checks for a shutdown request
@@ -83,11 +79,9 @@ class Lockstep:
         # by the id of the header, which stays unique because the DriverConnection keeps the header alive
         self.drivers: dict[int, DriverConnection] = {}
         self.lock = Lock()
-        self.heard = Event()    # set when a command arrives
         self.arrived: list[Received] = []       # commands that settle() has not ordered yet
         self.ready: list[tuple[Any, Any]] = []   # commands in the order in which they take effect
         self.idle = True        # whether everything was asleep, and nothing has been delivered since
-        self.held = False       # whether the clock was held after the last tick
         self.tick = 0
 
     def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
@@ -96,20 +90,16 @@ class Lockstep:
             self.arrived.append(Received(target, header, command, monotonic(),
                                          self.idle and not self.watch.starting))
         self.watch.starting.pop(header['callerid'], None)
-        self.heard.set()
 
     def begin(self) -> None:
         """Begin a tick. What has woken by itself still belongs to the tick before."""
         self.tick += 1
-        moving = {driver.name for driver in self.drivers.values() if driver.moving}
-        if self.watch.update() or self.held or not self.watch.drivers or not self.watch.drivers <= moving:
-            self._settle()      # otherwise, all of them wait for the tick
         while True:
+            self._settle()
             with self.lock:     # if nothing has arrived, the next tick has begun
                 self.idle = bool(self.arrived)
             if not self.idle:
-                break
-            self._settle()
+                return
 
     def deliver(self, publisher: rospy.Publisher, message: Message) -> None:
         """Publish a message, and wait until everything that it has woken is asleep again."""
@@ -121,11 +111,12 @@ class Lockstep:
         buffer = BytesIO()
         serialize_message(buffer, topic.seq, message)
         for connections, wait in groups:
-            self.heard.clear()
             for connection in connections:
-                write(connection, buffer.getvalue())
+                try:
+                    connection.write_data(buffer.getvalue())
+                except Exception:       # of various kinds
+                    connection.close()      # the node has exited
             if wait:
-                self.heard.wait(ANSWER_TIME)    # before a command arrives, there is no need to look
                 self._settle(isinstance(message, Clock))
 
     def apply(self) -> None:
@@ -138,23 +129,14 @@ class Lockstep:
         """Wait until a time (s of the monotonic clock), or longer if this tick tests who sends without being woken."""
         self.idle = True
         hold = max(map(self._hold, self.drivers.values()), default=0.0)
-        self.held = hold > 0
         later = max(until, monotonic() + hold)
         for driver in self.drivers.values():
             driver.time += min(hold, later - until)     # not part of the interval
-        if any(process.new_threads for process in self._watched()):
-            self._find_pollers()
-        self._sleep(later)
-
-    def _watched(self) -> Collection[Process]:
-        return self.watch.processes.values()
-
-    def _find_pollers(self) -> None:
-        find_pollers(self._watched(), lambda: self._sleep(monotonic() + TEST))
-
-    def _sleep(self, until: float) -> None:
-        while monotonic() < until and not self.ended():
-            sleep(max(0.0, min(until - monotonic(), SLEEP)))
+        processes = self.watch.processes.values()
+        if any(process.new_threads for process in processes):
+            find_pollers(processes)
+        while monotonic() < later and not self.ended():
+            sleep(max(0.0, min(later - monotonic(), SLEEP)))
 
     def _hold(self, driver: DriverConnection) -> float:
         """Return for how long to hold the clock after this tick because of a driver, s of wall time."""
@@ -171,7 +153,7 @@ class Lockstep:
         """Wait until everything is asleep, and order the commands that have arrived. new_time: whether the time was
         delivered, for which some threads poll."""
         self._wait_while_awake()
-        threads = new_time and polling(self._watched())     # these may not have seen the time yet
+        threads = new_time and polling(self.watch.processes.values())     # these may not have seen the time yet
         if threads:
             while still_polling(threads) and not self.ended():
                 sleep(LOOK[0])
@@ -182,7 +164,7 @@ class Lockstep:
         arrived.sort(key=lambda each: each.header['callerid'])
         counts = Counter(id(each.header) for each in arrived if each.moves())
         for each in arrived:
-            self._check(self._driver_of(each.header), each, counts[id(each.header)])
+            self._check(each, counts[id(each.header)])
             self.ready.append((each.target, each.command))
 
     def _wait_while_awake(self) -> None:
@@ -201,25 +183,24 @@ class Lockstep:
                     return
                 del awake[name]
                 if self.watch.forget(name):
-                    self._report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
+                    self.report(name, f'did not become idle within {NODE_TIMEOUT:g} s')
             if now - begin > LONG_WAIT and name != self.watch.own_name and not said:
                 said = True
                 rospy.loginfo('The clock waits for %s', name)
             if now - begin > LONG:
-                self._find_pollers()    # again: on a busy machine, such a thread may not run for a while
+                # again: on a busy machine, such a thread may not run for a while
+                find_pollers(self.watch.processes.values())
             sleep(min(max(LOOK[0], LOOK_LATER * (now - begin)), LOOK[1]))
 
-    def _driver_of(self, header: dict[str, str]) -> DriverConnection:
-        """Return the DriverConnection of a connection."""
+    def _check(self, received: Received, count: int) -> None:
+        """Update what is known of a driver with a command, and report it if the command is not in step. count: of the
+        moving commands that have arrived together."""
+        header = received.header
         if id(header) not in self.drivers:
             self.drivers = {key: driver for key, driver in self.drivers.items()
                             if self.watch.is_connected(driver.header)}
             self.drivers[id(header)] = DriverConnection(header)
-        return self.drivers[id(header)]
-
-    def _check(self, driver: DriverConnection, received: Received, count: int) -> None:
-        """Update what is known of a driver with a command, and report it if the command is not in step. count: of the
-        moving commands that have arrived together."""
+        driver = self.drivers[id(header)]
         first = not driver.moving
         driver.moving = received.moves()
         if not driver.moving:
@@ -243,27 +224,6 @@ class Lockstep:
             reason = 'sends commands that no tick of /clock has prompted'
         if reason:
             self.watch.forget(driver.name)
-            self._report(driver.name, reason)
-
-    def _report(self, name: str, reason: str) -> None:
-        for driver in self.drivers.values():
-            driver.in_step = driver.in_step and driver.name != name
-        self.report(name, reason)
-
-
-def write(connection: Any, data: bytes) -> None:
-    """Send a serialized message; without a detour through the thread of the connection, unless that has work to do or
-    the receiver does not read."""
-    try:
-        writable = select.poll()
-        with connection._lock:
-            if connection._cond_data_available._waiters:    # its thread waits for a message
-                writable.register(connection.socket, select.POLLOUT)
-        if writable.poll(0):
-            connection = connection._connection
-        connection.write_data(data)
-    except Exception as error:
-        # another thread may have closed it meanwhile, which causes various errors
-        if not (isinstance(error, (TransportException, OSError)) or connection.done):
-            raise
-        connection.close()      # the node has exited
+            for each in self.drivers.values():      # a node may have several publishers
+                each.in_step = each.in_step and each.name != driver.name
+            self.report(driver.name, reason)

@@ -10,19 +10,15 @@ from __future__ import annotations
 import os
 import socket
 import time
-from typing import Any, Callable, Iterable, List, Optional, Tuple
+from typing import Any, Iterable
 
 # s: a thread that sleeps for less than this polls. On simulated time, ros::Rate sleeps for 1 ms at a time, which took
 # up to 3.8 ms on a busy machine
 POLL = 0.02
 # the greatest number of processes with threads that poll at which it is usual that none of them has run during a check
 AT_REST = 2
-TESTS = 4       # how often to look for threads that poll, as long as it is uncertain for one of them
 ENDED = b'X', b'Z'      # states of a thread that has exited
-NANOSLEEP = b'hrtimer_nanosleep'
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
-# first parts of the names of the kernel functions in which most threads wait, always in state S
-INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', NANOSLEEP
 
 
 def _cpu_clock(number: int, of_thread: bool) -> int:
@@ -36,30 +32,24 @@ class Thread:
     def __init__(self, folder: str, number: int) -> None:
         """folder: folder of the thread below /proc. Raises OSError if it has exited or must not be inspected."""
         self.clock = _cpu_clock(number, True)
-        self.is_main = folder.split('/')[2] == str(number)
         self.files: list[int] = []
         self.ran: bytes | None = None       # how long and how often it has run
         self.changed = 0.0      # s of the monotonic clock: when a change of `ran` was last detected
         self.place = b'0'       # result of the last waits_in()
         self.is_poller = False  # whether it was found to wake by itself every few milliseconds
-        try:
-            for name in ('stat', 'wchan', 'schedstat'):
-                self.files.append(os.open(folder + name, os.O_RDONLY))
-            self.look()
-        except OSError:
-            self.close()
-            raise
+        for name in ('stat', 'wchan', 'schedstat'):
+            self.files.append(os.open(folder + name, os.O_RDONLY))
+        self.look()
 
-    def close(self) -> None:
+    def __del__(self) -> None:
         for file in self.files:
             os.close(file)
-        self.files = []
 
     def _read(self, number: int) -> bytes:
         """Return the content of a file; nothing if the thread has exited."""
         try:
             return os.pread(self.files[number], 512, 0)
-        except (OSError, IndexError):       # IndexError: the files are closed
+        except OSError:
             return b''
 
     def look(self) -> bytes:
@@ -76,22 +66,15 @@ class Thread:
 
     def sleeps(self) -> bool:
         """Return whether the thread is waiting. Raises OSError if it has gone: another one may have taken its place."""
-        self.place = os.pread(self.files[1], 64, 0)
-        if self.place.startswith(INTERRUPTIBLE):
-            return True
-        # state S alone may belong to a thread that is about to wait and may still find that it need not wait
         state = self.state()
+        if not state:
+            raise ProcessLookupError
+        # state S alone may belong to a thread that is about to wait and may still find that it need not wait
         return self.waits_in() not in (b'0', b'') if state == b'S' else state in ENDED
 
     def state(self) -> bytes:
         """Return the letter of the state of the thread."""
         return self._read(0).rpartition(b') ')[2][:1]     # the name in () may contain any characters
-
-    def naps(self) -> bool:
-        """Return whether this is the main thread, and is running or will wake by itself, but not to look at the time
-        again and again."""
-        name = self.waits_in() if self.is_main and not self.is_poller else b''
-        return name == b'0' or any(part in name for part in TIMED)
 
     def runs(self) -> int:
         """Return how often the thread has run; 0 if it has exited."""
@@ -100,15 +83,12 @@ class Thread:
 
     def polls(self) -> bool:
         """Return whether the thread is running or runnable, or sleeps only briefly; to be called after sleeps()."""
-        if not (self.is_poller or self.place.startswith((b'0', NANOSLEEP))):
+        if not (self.is_poller or self.place.startswith((b'0', b'hrtimer_nanosleep'))):
             return False
         now = time.monotonic()      # before the look: on a busy machine, the caller may be suspended in between
         exists = bool(self.look()) and self.state() not in ENDED
         self.is_poller = self.is_poller and now - self.changed < POLL
         return exists and (now - self.changed < POLL or self.waits_in() == b'0')
-
-
-Polling = List[Tuple[Thread, Optional[bytes]]]      # threads that poll, each with its `ran`
 
 
 class Process:
@@ -121,16 +101,10 @@ class Process:
         self.clock = _cpu_clock(pid, False)
         self.without = without
         self.socket: socket.socket | None = None    # the connection by which it was found
-        self.threads: dict[int, Thread] = {}       # by number
+        self.main = Thread(f'{self.folder}{pid}/', pid)
+        self.threads = {pid: self.main} if pid != without else {}       # by number
         self.new_threads = True     # whether there are threads that find_pollers() has not seen
-        self._update()
-        if not self.threads:
-            raise ProcessLookupError(f'no process {pid}')
-
-    def close(self) -> None:
-        for thread in self.threads.values():
-            thread.close()
-        self.threads = {}
+        self.ended()
 
     def activity(self, without_pollers: bool = False) -> Any:
         """Return a value that changes when a thread runs, and is up to date for waiting threads. None if the process
@@ -158,34 +132,32 @@ class Process:
         """Return whether there are threads that were found to wake by themselves."""
         return any(thread.is_poller for thread in self.threads.values())
 
-    def ended(self) -> bool:
-        """Update the list of threads after one has exited; return whether all have exited."""
-        self._update()
-        return not self.threads
-
     def naps(self) -> bool:
-        """Return whether the main thread naps, see Thread."""
-        return any(thread.naps() for thread in self.threads.values())
+        """Return whether the main thread is running or will wake by itself, but not to look at the time again and
+        again."""
+        name = b'' if self.main.is_poller else self.main.waits_in()
+        return name == b'0' or any(part in name for part in TIMED)
 
     def main_runs(self, longer_than: float) -> int:
         """Return how often the main thread has run; 0 if it has not waited for longer than so many s since."""
-        runs = sum(thread.runs() for thread in self.threads.values() if thread.is_main)
-        since = max((thread.changed for thread in self.threads.values() if thread.is_main), default=0.0)
-        return runs if time.monotonic() - since > longer_than else 0
+        runs = self.main.runs()
+        return runs if time.monotonic() - self.main.changed > longer_than else 0
 
-    def _update(self) -> None:
+    def ended(self) -> bool:
+        """Update the list of threads; return whether all have exited."""
         try:
             numbers = set(map(int, os.listdir(self.folder))) - {self.without}
         except (FileNotFoundError, ProcessLookupError):
             numbers = set()     # it has exited
         for number in self.threads.keys() - numbers:
-            self.threads.pop(number).close()
+            del self.threads[number]
         for number in numbers - self.threads.keys():
             try:
                 self.threads[number] = Thread(f'{self.folder}{number}/', number)
                 self.new_threads = True
             except (FileNotFoundError, ProcessLookupError):
                 pass
+        return not self.threads
 
 
 class Network:
@@ -226,27 +198,22 @@ def find_awake(processes: Iterable[Process], network: Network | None = None) -> 
     return None
 
 
-def polling(processes: Iterable[Process]) -> Polling:
-    """Return the threads that sleep only briefly: they poll the time instead of waiting for a message."""
+def polling(processes: Iterable[Process]) -> list[tuple[Thread, bytes | None]]:
+    """Return the threads that sleep only briefly, each with its `ran`: they poll the time."""
     return [(thread, thread.ran) for process in processes for thread in process.threads.values() if thread.polls()]
 
 
-def still_polling(threads: Polling) -> bool:
+def still_polling(threads: list[tuple[Thread, bytes | None]]) -> bool:
     """Return whether one of these threads, from polling(), is still in the same sleep."""
     return any(thread.polls() and thread.ran == ran for thread, ran in threads)
 
 
-def find_pollers(processes: Iterable[Process], pause: Callable[[], None]) -> None:
-    """Find the threads that run while nothing is delivered. pause(): sleeps for so long that a thread that polls
-    usually runs more than once."""
+def find_pollers(processes: Iterable[Process]) -> None:
+    """Find the threads that run more than once while nothing is delivered, which takes POLL."""
     before = []
     for process in processes:
         process.new_threads = False
         before += [(thread, thread.runs()) for thread in process.threads.values()]
-    for _ in range(TESTS):
-        pause()
-        runs = [(thread, thread.runs() - count) for thread, count in before]
-        for thread, count in runs:
-            thread.is_poller = thread.is_poller or count > 1
-        if all(count != 1 for _, count in runs):
-            break
+    time.sleep(POLL)
+    for thread, runs in before:
+        thread.is_poller = thread.is_poller or thread.runs() > runs + 1

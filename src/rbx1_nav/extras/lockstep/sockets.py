@@ -16,7 +16,6 @@ from rbx1_nav.extras.lockstep.processes import Process
 TABLES = Path('/proc/net/tcp'), Path('/proc/net/tcp6')     # the second one exists only with IPv6
 INODE = 9               # number of the field
 LISTEN = '0A'           # state of a socket
-MAPPED = socket.inet_pton(socket.AF_INET6, '::ffff:0:0')[:12]   # first bytes of an IPv4 address as an IPv6 address
 
 
 def own_process() -> Process | None:
@@ -37,9 +36,8 @@ def peer_process(sock: socket.socket) -> Process | None:
         addresses = [_address(sock.family, each) for each in (peer, own)]
     except (OSError, AttributeError):   # closed
         return None
-    # the peer may have a socket for both families, as rosnodejs, Java and Go do
-    mapped = [_words(MAPPED) + each for each in addresses]
-    return _process_with(lambda fields: fields[1:3] in (addresses, mapped))
+    # the peer may have a socket for both families, as rosnodejs, Java and Go do: an IPv4 address is then the end of one
+    return _process_with(lambda fields: all(map(str.endswith, fields[1:3], addresses)))
 
 
 def listening_process(port: int) -> Process | None:
@@ -63,11 +61,9 @@ def _process_with(matches: Callable[[list[str]], bool]) -> Process | None:
 
 def _address(family: int, address: tuple[str, int]) -> str:
     """Return an address as in /proc/net/tcp: words of 32 bits in the machine's byte order, and the port."""
-    return '%s:%04X' % (_words(socket.inet_pton(family, address[0])), address[1])
-
-
-def _words(host: bytes) -> str:
-    return ''.join('%08X' % int.from_bytes(host[i:i + 4], sys.byteorder) for i in range(0, len(host), 4))
+    host = socket.inet_pton(family, address[0])
+    words = ['%08X' % int.from_bytes(host[i:i + 4], sys.byteorder) for i in range(0, len(host), 4)]
+    return '%s:%04X' % (''.join(words), address[1])
 
 
 def _read_link(path: str) -> str | None:

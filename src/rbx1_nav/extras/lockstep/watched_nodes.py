@@ -114,14 +114,12 @@ class Watch:
         for name, sock in sockets.items():
             if name in self.forgotten:
                 continue
-            known = self.processes.get(name)
-            # one that was known by another connection is closed below
-            process = self.processes.pop(name) if known and known.socket is sock else peer_process(sock)
+            process = self.processes.get(name)
+            if not process or process.socket is not sock:
+                process = peer_process(sock)
             if process:
                 process.socket = sock
                 processes[name] = process
-        for process in self.processes.values():
-            process.close()
         self.processes = processes
         self.drivers = drivers.keys() & processes.keys()
 

@@ -13,8 +13,6 @@ UNPROMPTED = 'sends commands that no tick of /clock has prompted'
 
 @pytest.fixture(name='world')
 def make_world(monkeypatch):
-    monkeypatch.setattr(lockstep, 'write', lambda connection, data: connection.write_data(data))
-    monkeypatch.setattr(lockstep, 'ANSWER_TIME', 0)
     return World(monkeypatch)
 
 

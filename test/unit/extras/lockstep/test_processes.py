@@ -36,7 +36,7 @@ def polling_process(child):
     process = Process(child.pid)
     wait_for(lambda: process.sleeps() and len(process.threads) == 2)
     for thread in process.threads.values():
-        thread.is_poller = not thread.is_main
+        thread.is_poller = thread is not process.main
     return process
 
 

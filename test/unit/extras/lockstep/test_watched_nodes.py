@@ -1,4 +1,5 @@
 """Watch finds the nodes that drive directly or through others, and those that are starting, and watches them."""
+import os
 import socket
 import subprocess
 import time
@@ -90,7 +91,6 @@ def test_a_peer_that_listens_for_both_families_is_found():
     with child, socket.create_connection(('127.0.0.1', int(child.stdout.readline()))) as connection:
         process = wait_for(lambda: peer_process(connection))
         assert process.folder == f'/proc/{child.pid}/task/'
-        process.close()
         child.stdin.close()
 
 
@@ -108,10 +108,16 @@ def test_a_driver_that_is_forgotten_holds_the_clock_no_more(world):
 
 def test_the_files_of_a_node_that_starts_and_then_drives_are_closed(world):
     """It is known by its connection for the clock, and then by that for the commands."""
+    def files():
+        return [link for file in os.listdir('/proc/self/fd') if f'/proc/{child.pid}/task' in (
+            link := os.path.realpath(f'/proc/self/fd/{file}'))]
     node = world.connect('/node')
+    child = world.children[-1]
     world.listen(node)
     starting = world.watch.processes['/node']
+    before = len(files())
     with node.socket.dup() as commands:
         world.drive(SimpleNamespace(header=node.header, endpoint_id='/node', socket=commands))
         assert world.watch.drivers == {'/node'} and world.watch.processes['/node'] is not starting
-    assert starting.threads == {}
+    del starting
+    assert len(files()) == before == 3

@@ -87,8 +87,6 @@ def worlds(monkeypatch):
     monkeypatch.setattr(watched_nodes, 'Network', lambda: SimpleNamespace(busy=lambda: False))
     world = World()
     yield world
-    for process in world.watch.processes.values():
-        process.close()
     for child in world.children:
         child.kill()
         child.communicate()
