@@ -14,11 +14,6 @@ from rbx1_nav.filter.priors import UNKNOWN_FLOOR, priors
 PATH = 2.0      # m, out and back
 
 
-def follows_filter(method):
-    """Whether the robot follows the filter, so that it drives a different path with each prior."""
-    return METHODS[method].pose == 'estimate'
-
-
 def run(task):
     """((true floor, method), {assumed floor: (Errors of the filter, of the port, of KnownHeading)}) of one run.
 
@@ -26,7 +21,7 @@ def run(task):
     the robot follows the filter. Raises StuckError.
     """
     robot, true, surface, assumed, method, seed = task
-    prior = next(iter(assumed.values())) if follows_filter(method) else None
+    prior = next(iter(assumed.values())) if METHODS[method].filtered else None
     filters = {} if prior else {name: CombinedOdometry(each, SECOND) for name, each in assumed.items()}
     port = RobotPoseEkf()
     best = KnownHeading(surface.slip_straight if surface else 0.0)
@@ -57,7 +52,7 @@ def tasks(surfaces, assumed, seeds):
     robot = simulated.robot()
     for true, surface in surfaces.items():
         for method in METHODS:
-            for group in [{name: prior} for name, prior in assumed.items()] if follows_filter(method) else [assumed]:
+            for group in [{name: prior} for name, prior in assumed.items()] if METHODS[method].filtered else [assumed]:
                 # nothing is drawn on the ideal floor
                 for seed in range(seeds if surface else 1):
                     yield robot, true, surface, group, method, seed

@@ -27,7 +27,7 @@ from rbx1_nav.base.publisher import with_frames
 from rbx1_nav.base.robot_parameters import DRIVER_KEYS, PARAMETERS as ROBOT, read_robot
 from rbx1_nav.base.refusals import Refusals
 from rbx1_nav.base.schedule import Schedule
-from rbx1_nav.exercise.methods import OF_PAGE
+from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.extras.lockstep.simulated_clock import PARAMETERS as CLOCK, read_clock
 from rbx1_nav.node import life
 from rbx1_nav.node.config import ConfigError, Section
@@ -41,7 +41,7 @@ from rbx1_nav.simulation.simulated_base_node import SimulatedRobot
 PARAMETERS = [
     number('robots', 0, '', 'number of robots at the beginning: robot1, robot2 and so on', 0, 200, 'a number'),
     number('spacing', 1.0, 'm', 'distance between neighbors in the frame map', 0, 1000, 'a distance'),
-    choice('method', ('none', *(name for name, each in OF_PAGE.items() if each.pose != 'estimate')), 'none',
+    choice('method', ('none', *(each.name for each in METHODS.values() if not each.filtered)), 'none',
            'script that fleet.launch starts for each robot'),
     number('rate', 50.0, 'Hz', 'rate at which the bases are updated; odometry at most', 1, 1000, 'a rate'),
     *CLOCK]

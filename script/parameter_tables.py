@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes the parameters that the nodes declare, and the names of the surfaces, into the files that list them.
+"""Writes the parameters that the nodes declare, the surfaces and the methods into the files that list them.
 
 A table in docs/ follows a comment: `<!-- parameters: FILE -->` for a node, or `<!-- parameters: FILE beyond OTHER -->`
 without the parameters of another node, `<!-- keys: NAME -->` for a part of the description of a robot, `<!-- keys:
-SURFACE -->` for surface files. Launch files and script/demo list the surfaces after
-`floor:`.
+SURFACE -->` for surface files. Launch files and script/demo list the surfaces after `floor:`, fleet.launch and
+fleet_robot.launch the methods without the filter; the page has a button for each method.
 """
 import glob
 import importlib.util
@@ -14,9 +14,13 @@ import sys
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..'))
 SURFACE_FILES = os.path.join(ROOT, 'config', 'surfaces')
-FILES = ['docs/*.md', 'launch/*.launch', 'rbx1_bringup/launch/*.launch*', 'script/demo']
+FILES = ['docs/*.md', 'launch/*.launch', 'rbx1_bringup/launch/*.launch*', 'script/demo', 'web/index.html']
 TABLE = re.compile(r'(?m)^<!-- (parameter|key)s: (\S+)( beyond (\S+))? -->\n\n(?:\|.*\n)*')
 SURFACES = re.compile(r'((?:doc="|NAME   )floor: )[^;\n]+')
+BUTTON = ('        <button type="button" class="run" data-method="{0.name}" data-pose="{0.pose}" data-name="{0.title}" '
+          'disabled></button>\n')
+BUTTONS = re.compile(r'(?m)(?:^ *<button type="button" class="run".*\n)+')
+FLEET = re.compile(r"""(doc="script that drives each robot: none, |arg\('method'\) in ')[\w, ]+""")
 sys.path.insert(0, os.path.join(ROOT, 'src'))
 os.environ['ROS_PACKAGE_PATH'] = ROOT      # needed to find the surface files
 
@@ -47,7 +51,8 @@ def surface_table():
 
 
 def filled_in(text):
-    """Return the text of a file with up-to-date tables and surfaces."""
+    """Return the text of a file with up-to-date tables, surfaces and methods."""
+    from rbx1_nav.exercise.methods import METHODS
     from rbx1_nav.node.parameters import table
     from rbx1_nav.base.surfaces import known_surfaces
 
@@ -58,7 +63,11 @@ def filled_in(text):
             [each for each in declared(kind, name) if table([each]) not in known], kind)
         return f'<!-- {kind}s: {name}{beyond or ""} -->\n\n' + '\n'.join(lines) + '\n'
     surfaces = ', '.join(known_surfaces(SURFACE_FILES))
-    return SURFACES.sub(lambda match: match[1] + surfaces, TABLE.sub(fill, text))
+    buttons = ''.join(map(BUTTON.format, METHODS.values()))
+    fleet = ', '.join(each.name for each in METHODS.values() if not each.filtered)
+    for pattern, listed in (SURFACES, surfaces), (FLEET, fleet):
+        text = pattern.sub(lambda match: match[1] + listed, text)
+    return BUTTONS.sub(buttons, TABLE.sub(fill, text))
 
 
 def files():

@@ -30,6 +30,7 @@ export class Drive {
     // capture: before any other handler of this key
     window.addEventListener('keydown', event => event.key === 'Escape' && this.stopRobot(), {capture: true});
     for (const run of this.runs) {
+      run.textContent = WORDS.method(run.dataset.name);
       run.onclick = () => this.startRun(run);
     }
     document.getElementById('reset').onclick = () => {
@@ -236,8 +237,8 @@ export class Drive {
       : running ? WORDS.running(driver)
       : this.hand ? WORDS.keysDrive
       : !status.started ? ''
-      : WORDS.outcome(WORDS[status.started], status.outcome === 'stopped' && !this.pressed ? WORDS.stoppedElsewhere :
-        WORDS.said(status.outcome));
+      : WORDS.outcome(WORDS.method(status.started),
+        status.outcome === 'stopped' && !this.pressed ? WORDS.stoppedElsewhere : WORDS.said(status.outcome));
     const why = !ready || running ? [] : [
       ...unfiltered.map(run => WORDS.needsFilter(run.textContent)),
       !status.can_reset && WORDS.noReset];

@@ -21,8 +21,8 @@ export function rowOf(pose) {
 // The method of the run and, when it has finished, by how much it has missed the start.
 export function missed({status, run, poses}) {
   const end = endOf(poses);
-  return !run || status.started !== run ? '' : !end || status.outcome !== 'finished' ? WORDS[run] : WORDS.outcome(
-    WORDS[run], WORDS.missed(fixed(Math.hypot(end[0], end[1]), 2), fixed(Math.abs(Number(rowOf(end)[2])), 0),
+  return !run || status.started !== run ? '' : !end || status.outcome !== 'finished' ? WORDS.method(run) : WORDS.outcome(
+    WORDS.method(run), WORDS.missed(fixed(Math.hypot(end[0], end[1]), 2), fixed(Math.abs(Number(rowOf(end)[2])), 0),
       'truth' in poses));
 }
 

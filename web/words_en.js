@@ -10,9 +10,8 @@ export const WORDS = {
   silent: 'No answer: the page does not show where the robot is now',
   lost: reason => `Not connected${reason ? ` (${reason})` : ''}; retrying`,
 
-  // methods, by the titles of the runs
-  drive: 'Methods',
-  'timed': 'Timed', 'with odometry': 'With odometry', 'with odometry and gyro': 'With odometry and gyro',
+  // methods; the node sends their titles
+  drive: 'Methods', method: title => title[0].toUpperCase() + title.slice(1),
   intro: 'Each method drives the robot out, turns it round, drives it back, and turns it round again, so that it should ' +
     'finish where it started. Timed moves for fixed durations. With odometry stops each motion when the wheels have ' +
     'measured it, but wheels slip; the gyro also measures how far the robot has turned.',

@@ -1,6 +1,6 @@
 // All words of the page in Chinese. words_zh_tw.js is made from words_zh.js by script/traditional.py.
 
-const RUNS = {'timed': '定时', 'with odometry': '用里程计', 'with odometry and gyro': '用里程计和陀螺仪', 'script': '脚本'};
+const RUNS = {'timed': '定时', 'with odometry': '用里程计', 'with odometry and gyro': '用里程计和陀螺仪', script: '脚本'};
 
 // The sentences of the node that a learner needs: [the English one, the Chinese one]. Other sentences stay English.
 const SENTENCES = [
@@ -32,9 +32,8 @@ export const WORDS = {
   silent: '没有应答：页面显示的不是机器人现在的位置',
   lost: reason => `未连接${reason ? `（${reason}）` : ''}，正在重试`,
 
-  // methods, by the titles of the runs
-  drive: '方法',
-  ...RUNS,
+  // methods; the node sends their titles
+  drive: '方法', method: title => RUNS[title] || title,
   intro: '每种方法都让机器人前进，掉头，返回，再掉头，这样它应该回到出发时的位姿。“定时”按固定的时间运动。' +
     '“用里程计”等轮子测得的距离或角度达到目标才停下，但是轮子会打滑；陀螺仪还测量机器人转了多少。',
   missed: (distance, angle, known) => `${known ? '' : '按照里程计，'}离起点 ${distance} m，航向差 ${angle}°`,
@@ -104,7 +103,7 @@ export const WORDS = {
   teacherAddress: '请打开 seats.py 最近一次打印的教师网址。第一个打开它的浏览器才能使用。',
 
   // the page without ROS
-  scriptHelp: '脚本，可以修改', runScript: '运行脚本', restore: '恢复原样',
+  script: RUNS.script, scriptHelp: '脚本，可以修改', runScript: '运行脚本', restore: '恢复原样',
   play: '播放', paces: ['实际速度', '5 倍速度', '20 倍速度', '立即显示'],
   manyRuns: number => `运行 ${number} 次`, manyHelp: '多次运行的方法',
   noPython: reason => `无法加载 Python：${reason}`,

@@ -1,6 +1,6 @@
 // All words of the page in Chinese. words_zh_tw.js is made from words_zh.js by script/traditional.py.
 
-const RUNS = {'timed': '定時', 'with odometry': '用里程計', 'with odometry and gyro': '用里程計和陀螺儀', 'script': '腳本'};
+const RUNS = {'timed': '定時', 'with odometry': '用里程計', 'with odometry and gyro': '用里程計和陀螺儀', script: '腳本'};
 
 // The sentences of the node that a learner needs: [the English one, the Chinese one]. Other sentences stay English.
 const SENTENCES = [
@@ -32,9 +32,8 @@ export const WORDS = {
   silent: '沒有回應：頁面顯示的不是機器人現在的位置',
   lost: reason => `未連線${reason ? `（${reason}）` : ''}，正在重試`,
 
-  // methods, by the titles of the runs
-  drive: '方法',
-  ...RUNS,
+  // methods; the node sends their titles
+  drive: '方法', method: title => RUNS[title] || title,
   intro: '每種方法都讓機器人前進，掉頭，返回，再掉頭，這樣它應該回到出發時的位姿。「定時」按固定的時間運動。' +
     '「用里程計」等輪子測得的距離或角度達到目標才停下，但是輪子會打滑；陀螺儀還測量機器人轉了多少。',
   missed: (distance, angle, known) => `${known ? '' : '按照里程計，'}離起點 ${distance} m，航向差 ${angle}°`,
@@ -104,11 +103,11 @@ export const WORDS = {
   teacherAddress: '請開啟 seats.py 最近一次印出的教師網址。第一個開啟它的瀏覽器才能使用。',
 
   // the page without ROS
-  scriptHelp: '腳本，可以修改', runScript: '執行腳本', restore: '恢復原樣',
+  script: RUNS.script, scriptHelp: '腳本，可以修改', runScript: '執行腳本', restore: '恢復原樣',
   play: '播放', paces: ['實際速度', '5 倍速度', '20 倍速度', '立即顯示'],
   manyRuns: number => `執行 ${number} 次`, manyHelp: '多次執行的方法',
   noPython: reason => `無法載入 Python：${reason}`,
   onlyScripts: '在這個頁面裡，只有腳本驅動機器人',
   tooLong: seconds => `這次執行在 ${seconds} s 內沒有算完，所以腳本被終止了。`};
 
-// script/traditional.py: d935e79e
+// script/traditional.py: 92a235b1

@@ -52,7 +52,7 @@ class TestBrowserComparison(PageTest):
         support.wait_for(focused, f'the focus on {name}')
 
     def test_earlier_runs_stay_and_can_be_hidden(self):
-        for number, method in enumerate(('timed', 'odometry'), 1):
+        for number, method in enumerate(('timed', 'odom'), 1):
             self.page.run(method)
             self.page.wait_for_text('run-state', 'finished')
             self.page.click('#reset')
@@ -122,7 +122,7 @@ class TestBrowserComparison(PageTest):
         support.wait_for(lambda: gaps() == 1, 'a gap')
 
     def test_a_saved_picture_has_its_numbers(self):
-        for method in 'timed', 'odometry':
+        for method in 'timed', 'odom':
             self.page.run(method)
             self.page.wait_for_text('run-state', ': finished')
         support.wait_for(lambda: self.driver.execute_script('return rbx1.model.status.seed') == '7', 'the seed')
@@ -145,7 +145,7 @@ class TestBrowserComparison(PageTest):
 
     def test_why_a_button_is_disabled(self):
         support.wait_for(lambda: self.page.find('.run[data-method=timed]').is_enabled(), 'a base')
-        self.assertFalse(self.page.find('.run[data-method=gyro]').is_enabled())
+        self.assertFalse(self.page.find('.run[data-method=ekf]').is_enabled())
         self.assertIn('needs the filter', self.page.text('why'))
 
     def test_a_session_by_keyboard_alone_and_with_reduced_motion(self):

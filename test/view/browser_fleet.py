@@ -40,7 +40,7 @@ class TestBrowserFleet(support.Case):
         # the robot on the floor, too
         page.driver.execute_script('document.querySelector(".other").dispatchEvent(new Event("click"))')
         page.wait_for_text('stop', 'Stop robot1')
-        page.run('odometry')
+        page.run('odom')
         support.wait_for(lambda: self.x('robot1') > 0.1, 'robot1 to drive')
         page.click('#stop')
         page.wait_for_text('run-state', 'The robot was stationary')

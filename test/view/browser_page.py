@@ -130,7 +130,7 @@ class TestBrowserPage(PageTest):
         self.page.wait_for_text('earlier', rf'1 timed ideal {end[3]:.3f} {end[2]:.1f}$')
 
     def test_stop_ends_a_run(self):
-        self.page.run('odometry')
+        self.page.run('odom')
         support.wait_for(lambda: self.odom.position()[0] > 0.05, 'the robot to drive')
         self.page.click('#stop')
         self.odom.wait_for_twist(0.0)
@@ -139,7 +139,7 @@ class TestBrowserPage(PageTest):
         self.assertLess(self.odom.position()[0], 0.9)   # before the end of the first leg
 
     def test_a_run_that_another_page_stops(self):
-        self.page.run('odometry')
+        self.page.run('odom')
         support.wait_for(lambda: self.odom.position()[0] > 0.05, 'the robot to drive')
         self.page.send(type='stop', number=1)       # this page does not know of it
         self.page.wait_for_text('run-state', 'With odometry: stopped, not from this page')

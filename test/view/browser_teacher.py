@@ -69,7 +69,7 @@ class TestBrowserTeacher(support.Case):
             support.wait_for(lambda: self.driver.execute_script(
                 'return rbx1.seats()[1].model.status.distance') == 0.1, 'the distance')
             # not timed: on a busy machine, the timed script fails, because a command was late
-            learner.send(type='run', method='odometry', reset=True)
+            learner.send(type='run', method='odom', reset=True)
             self.wait_for(2, 'state', '^Driving: with odometry$')
             self.wait_for(2, 'answer', '^$')
             self.wait_for(2, 'state', r'^With odometry: missed the start by 0\.\d\d m and \d+°$')

@@ -86,7 +86,7 @@ class TestBrowserWithoutRos(support.Case):
                 for seed in range(7, 7 + int(os.environ.get('RBX1_PAGE_SEEDS', 1))):
                     end = simulate(method, robot, load_surface(surface, resources.surfaces()), seed, filtered=True).end
                     poses = self.driver.execute_async_script(RUN, {
-                        'method': METHODS[method].page_name, 'surface': surface, 'seed': seed, 'parameters': {},
+                        'method': method, 'surface': surface, 'seed': seed, 'parameters': {},
                         'text': '', 'stop': None, 'as_one_frame': True})
                     expected = {source: printed(getattr(end, source)) for source in ('truth', 'odometry', 'estimate')}
                     self.assertEqual({source: printed(pose) for source, pose in poses.items()}, expected)

@@ -1,27 +1,16 @@
-"""Each method that is declared has its script, its button on the page and its launch argument."""
+"""Each method that is declared has its script."""
 import os
-import re
 
-from rbx1_nav.exercise.methods import METHODS, OF_PAGE
+from rbx1_nav.exercise.methods import METHODS
 
-ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..')
-
-
-def read(*path):
-    with open(os.path.join(ROOT, *path), encoding='utf-8') as file:
-        return file.read()
+NODES = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'nodes')
 
 
-def test_each_method_has_a_script_and_a_button_with_its_title():
+def test_each_method_has_a_script():
     for each in METHODS.values():
-        assert os.path.exists(os.path.join(ROOT, 'nodes', each.script)) and each.pose in ('', 'odometry', 'estimate')
-    button = re.compile(r'class="run" data-method="(\w+)" data-pose="(\w*)" data-text="([^"]+)" disabled')
-    buttons = button.findall(read('web', 'index.html'))
-    assert buttons == [(name, each.pose, each.title) for name, each in OF_PAGE.items()]
-    for each in OF_PAGE.values():
-        assert f"'{each.title}': '{each.title.capitalize()}'" in read('web', 'words_en.js')
+        assert os.path.exists(os.path.join(NODES, each.script)) and each.pose in ('', 'odometry', 'estimate')
 
 
-def test_the_fleet_starts_each_method_without_the_filter():
-    started = set(re.findall(r"arg\('method'\) == '(\w+)'", read('launch', 'fleet_robot.launch')))
-    assert started == {name for name, each in OF_PAGE.items() if each.pose != 'estimate'}
+def test_the_fleet_finds_the_script_of_a_method_by_its_name():
+    for each in METHODS.values():
+        assert each.filtered or each.script == f'{each.name}_out_and_back.py'

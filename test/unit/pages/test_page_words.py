@@ -33,7 +33,7 @@ class Words(HTMLParser):
 
 def keys(name):
     """The names of the texts in a file of words."""
-    found = re.findall(r"(?:[{,]|^)\s*(?:'([a-z ]+)'|(\w+)): ", read(name), re.M)
+    found = re.findall(r"(?:[{,]|^)\s*(?:'([a-z ]+)'|(\w+)): ", read(name).partition('export const WORDS')[2], re.M)
     return {quoted or plain for quoted, plain in found}
 
 

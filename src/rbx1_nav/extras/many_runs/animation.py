@@ -48,7 +48,7 @@ class Panel:
         self.trail, = axes.plot([], [], color=TRUTH, linewidth=1.5)
         self.robot, = axes.plot([], [], color=TRUTH, linewidth=2.5)
         # on top, so that it is also visible where the robot is
-        color = ESTIMATE if METHODS[method].pose == 'estimate' else ODOMETRY
+        color = ESTIMATE if METHODS[method].filtered else ODOMETRY
         self.believed, = axes.plot([], [], color=color, linestyle=STYLES[color], linewidth=1.8)
 
     def show(self, time: float) -> None:
@@ -91,7 +91,7 @@ def animate(file: str, surface: str, results: Mapping[str, SimulationResult]) ->
     figure.subplots_adjust(left=0.01, right=0.99, bottom=0.1, top=0.8, wspace=0.04)
     figure.suptitle(f'Out and back on {surface}')
     shown = {'true pose': TRUTH}
-    by_estimate = [METHODS[method].pose == 'estimate' for method in results]
+    by_estimate = [METHODS[method].filtered for method in results]
     if not all(by_estimate):
         shown['odometry'] = ODOMETRY
     if any(by_estimate):

@@ -67,11 +67,6 @@ class Chunk(NamedTuple):
         return Case(self.method, robot, self.combination.surface, self.combination.parameters)
 
 
-def is_filtered(method: str) -> bool:
-    """Return whether a filter stops the motions of a method: its gyro, and so the seed, reaches the wheels."""
-    return METHODS[method].pose == 'estimate'
-
-
 def simulate_row(case: Case, seed: int, floor: Floor | None = None) -> Row:
     """Return the RESULTS of a run. Raises StuckError, which names the run. floor: see simulate()."""
     try:
@@ -88,9 +83,9 @@ def simulate_row(case: Case, seed: int, floor: Floor | None = None) -> Row:
 def simulate_rows(task: tuple[Case, Sequence[int]]) -> list[Row]:
     """Return the RESULTS of the runs of a Case with several seeds."""
     case, seeds = task
-    if is_filtered(case.method) or len(seeds) == 1:
+    if METHODS[case.method].filtered or len(seeds) == 1:
         return [simulate_row(case, seed) for seed in seeds]
-    # no seed reaches the wheels, so they are computed once, and all runs get stuck together
+    # only the filter, by its gyro, lets a seed reach the wheels: computed once, all runs get stuck together
     row = simulate_row(case, seeds[0], ManyFloors(case.surface, seeds) if case.surface else None)
     return list(zip(*(numpy.full(len(seeds), value).tolist() for value in row)))
 
@@ -112,7 +107,7 @@ def add_rows(summary: Summary, rows: Sequence[Row]) -> Array:
 def chunks(combinations: Sequence[Combination], methods: Sequence[str], seeds: range) -> Iterator[Chunk]:
     """Yield the Chunks of a sweep, in the order of the file."""
     for combination, method in itertools.product(combinations, methods):
-        size = max(1, min(FILTERED, len(seeds) // CHUNKS)) if is_filtered(method) else CHUNK
+        size = max(1, min(FILTERED, len(seeds) // CHUNKS)) if METHODS[method].filtered else CHUNK
         for start in range(0, len(seeds), size):
             yield Chunk(combination, method, seeds[start:start + size], start + size >= len(seeds))
 

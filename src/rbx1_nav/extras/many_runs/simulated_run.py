@@ -142,7 +142,7 @@ def simulate(method: str, robot: Robot, surface: Surface | None, seed: int, filt
     filter, if they differ from the surface; listen(Snapshot, Messages): called at each tick; parameters: all PARAMETERS
     with their values; floor: in place of the seed's, for many runs without a filter, whose true poses are arrays.
     """
-    filtered = filtered or METHODS[method].pose == 'estimate'
+    filtered = filtered or METHODS[method].filtered
     simulation = Simulation(robot, surface, seed, filtered, keep, prior, listen, parameters['rate'], floor)
     return run(simulation, method, parameters)
 

@@ -12,7 +12,7 @@ from typing import Any, Callable, Mapping
 from rbx1_nav.base.robot_parameters import read_robot
 from rbx1_nav.base.surfaces import read_surface
 from rbx1_nav.exercise.legs import StuckError
-from rbx1_nav.exercise.methods import OF_PAGE
+from rbx1_nav.exercise.methods import METHODS
 from rbx1_nav.extras.many_runs.simulated_run import CALIBRATION, EXERCISE, PARAMETERS, run
 from rbx1_nav.extras.page.recorded_run import ERROR, INFO, RecordedSimulation, Stopped
 from rbx1_nav.extras.page.rospy_stand_in import ROSException, ROSInterruptException, Rospy
@@ -27,7 +27,7 @@ def describe_page(config: Mapping[str, Any]) -> str:
     """Return what the page can choose, as JSON. config: see run_request()."""
     return json.dumps({
         'surfaces': list(config['surfaces']), 'choices': CHOICES, 'defaults': DEFAULTS, 'scripts': SCRIPTS,
-        'titles': {SCRIPT: SCRIPT, **{name: each.title for name, each in OF_PAGE.items()}}})
+        'titles': {SCRIPT: SCRIPT, **{name: each.title for name, each in METHODS.items()}}})
 
 
 def choose(config: Mapping[str, Any], name: str, text: str) -> Any:
@@ -44,10 +44,10 @@ def run_request(config: Mapping[str, Any], text: str) -> str:
     """Run what a request asks for, and return the frames of the run as a JSON list.
 
     config: parameters of the robot, and the surfaces by name, as in the YAML files; text: a JSON object with method (of
-    OF_PAGE, or SCRIPT with its `text`), surface, seed, parameters, stop (s, or null), as_one_frame.
+    METHODS, or SCRIPT with its `text`), surface, seed, parameters, stop (s, or null), as_one_frame.
     """
     request = json.loads(text)
-    method, parameters = OF_PAGE.get(request['method']), {**PARAMETERS, **request['parameters']}
+    method, parameters = METHODS.get(request['method']), {**PARAMETERS, **request['parameters']}
     title = method.title if method else SCRIPT
     simulation = RecordedSimulation(
         read_robot(config['robot']), read_surface(config['surfaces'][request['surface']], request['surface']),

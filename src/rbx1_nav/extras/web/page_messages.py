@@ -7,7 +7,7 @@ from __future__ import annotations
 import json
 from typing import Any, NamedTuple, Union
 
-from rbx1_nav.exercise.methods import OF_PAGE
+from rbx1_nav.exercise.methods import METHODS
 
 MAX_MESSAGE = 1024      # bytes
 MAX_NUMBER = 2 ** 53     # largest integer that JavaScript represents exactly
@@ -27,7 +27,7 @@ class Hello(NamedTuple):
 class RunRequest(NamedTuple):
     """Start a run."""
 
-    method: str = ''            # a key of OF_PAGE
+    method: str = ''            # a key of METHODS
     reset: bool = False         # whether to reset a simulated robot before the run
     confirmed: bool = False     # whether the user has confirmed that a real robot may move
     clock: float = 0.0          # s: `clock` of the last frame that the browser has received
@@ -100,8 +100,8 @@ def parse(text: object) -> Hello | Request | InviteRequest:
 def _checked(name: str, value: object, default: Any) -> Any:
     """Return the value of a field. Raises InvalidMessage."""
     if name == 'method':
-        if value not in OF_PAGE:
-            raise InvalidMessage(f'method: expected one of {", ".join(OF_PAGE)}')
+        if value not in METHODS:
+            raise InvalidMessage(f'method: expected one of {", ".join(METHODS)}')
     elif name not in RANGES:
         if not isinstance(value, type(default)):
             raise InvalidMessage(f"{name}: expected {'text' if default == '' else 'true or false'}")

@@ -8,7 +8,7 @@ from threading import Lock, Thread
 from types import MappingProxyType
 from typing import Callable, Mapping, Sequence
 
-from rbx1_nav.exercise.methods import OF_PAGE
+from rbx1_nav.exercise.methods import METHODS
 
 STOP_TIMEOUT = 3.0  # s after which a script that does not exit is killed; a script should exit within 1.4 s
 
@@ -32,7 +32,7 @@ class Runs:
         self.process: subprocess.Popen[bytes] | None = None
 
     def start(self, method: str, before: Callable[[Callable[[], bool]], None]) -> bool:
-        """Call before(cancelled), and then start a run. method: a key of OF_PAGE; cancelled(): returns whether the run
+        """Call before(cancelled), and then start a run. method: a key of METHODS; cancelled(): returns whether the run
         was stopped. Returns False if a run is in progress.
 
         If before() raises an exception, the run is not started, and the outcome contains the error.
@@ -46,7 +46,7 @@ class Runs:
 
     def _run(self, method: str, before: Callable[[Callable[[], bool]], None]) -> None:
         # this thread must live as long as the script: pdeathsig is sent when the thread that started the script exits
-        chosen = OF_PAGE[method]
+        chosen = METHODS[method]
         self.on_change(chosen.title, '')
         try:
             before(lambda: self.stop_requested)

@@ -18,7 +18,7 @@ TURTLEBOT = load_robot(os.path.join(ROOT, 'config', 'turtlebot.yaml'))
 @pytest.mark.parametrize('method', METHODS)
 def test_end_poses_are_those_of_simulate_py(method, surface):
     for seed in 7, 8, 2147483647:
-        frame = request(METHODS[method].page_name, surface, seed)[-1]
+        frame = request(method, surface, seed)[-1]
         end = simulate(method, TURTLEBOT, load_surface(surface, SURFACES), seed, filtered=True).end
         assert frame['poses'] == {'truth': list(end.truth), 'odometry': list(end.odometry),
                                   'estimate': list(end.estimate)}
@@ -34,7 +34,7 @@ def test_other_speeds_and_distances():
 
 
 def test_frames_add_up_to_the_run():
-    frames, whole = request('odometry', 'low_ply_carpet', as_one_frame=False), request('odometry', 'low_ply_carpet')
+    frames, whole = request('odom', 'low_ply_carpet', as_one_frame=False), request('odom', 'low_ply_carpet')
     times = [frame['time'] for frame in frames]
     assert times[0] == 0 and times == sorted(times)
     # 0.04 s, and the last frame at the end
@@ -49,7 +49,7 @@ def test_frames_add_up_to_the_run():
         'low_ply_carpet', '7', 'with odometry', '')
 
 
-@pytest.mark.parametrize('method', ['timed', 'gyro'])
+@pytest.mark.parametrize('method', ['timed', 'ekf'])
 def test_stop(method):
     frames, whole = (request(method, 'low_ply_carpet', stop=stop, as_one_frame=False) for stop in (3.0, None))
     same = sum(frame['time'] <= 3.0 for frame in whole)

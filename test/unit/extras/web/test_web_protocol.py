@@ -14,7 +14,7 @@ from rbx1_nav.extras.web.page_messages import (
     ({'type': 'hello'}, Hello('', '')),
     ({'type': 'hello', 'code': 'a'}, Hello('', 'a')),
     ({'type': 'invite'}, InviteRequest()),
-    ({'type': 'run', 'method': 'gyro', 'reset': True}, RunRequest('gyro', True, False, 0.0)),
+    ({'type': 'run', 'method': 'ekf', 'reset': True}, RunRequest('ekf', True, False, 0.0)),
     ({'type': 'hand', 'on': True, 'confirmed': True, 'clock': 2.5}, HandRequest(True, True, 2.5)),
     ({'type': 'drive', 'forward': 1, 'left': -0.5}, DriveRequest(1.0, -0.5, 0.0)),
     ({'type': 'drive'}, DriveRequest(0.0, 0.0, 0.0)),

@@ -37,7 +37,7 @@ def make(tmp_path, monkeypatch):
         script.write_text(SCRIPT.format(python=sys.executable, handler=handler, status=status))
         script.chmod(0o755)
     write()
-    monkeypatch.setattr(module, 'OF_PAGE', {'timed': METHODS['timed']._replace(
+    monkeypatch.setattr(module, 'METHODS', {'timed': METHODS['timed']._replace(
         script='script.py', arguments=(str(pid_file),))})
     yield runs, changes, pid_file, write
     runs.stop()
@@ -73,8 +73,8 @@ def test_a_run_ends_with_a_view_that_is_killed(started):
     runs, _, pid_file, _ = started
     code = ('import sys, time; sys.path.insert(0, sys.argv[1])\n'
             'from rbx1_nav.extras.web import page_runs as runs\n'
-            'timed = runs.OF_PAGE["timed"]._replace(script="script.py", arguments=(sys.argv[3],))\n'
-            'runs.OF_PAGE = {"timed": timed}\n'
+            'timed = runs.METHODS["timed"]._replace(script="script.py", arguments=(sys.argv[3],))\n'
+            'runs.METHODS = {"timed": timed}\n'
             'runs.Runs(sys.argv[2], lambda *_: None, lambda: None).start("timed", lambda _: None)\n'
             'time.sleep(600)')
     with subprocess.Popen([sys.executable, '-c', code, SOURCE, runs.folder, str(pid_file)]) as view:
