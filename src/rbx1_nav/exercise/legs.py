@@ -31,23 +31,18 @@ class Motion(NamedTuple):
     ticks: int
 
 
-def whole_ticks(number: float, formula: str) -> int:
-    """Return a number of ticks, rounded down. Raises ValueError if it is below 1 or above MAX_TICKS.
-
-    formula: how the number was calculated, for the error message.
-    """
-    if not (isfinite(number) and 1 <= number + 1e-9 <= MAX_TICKS):
-        raise ValueError(f'{formula}: {number:g} ticks: expected from 1 to {MAX_TICKS}')
-    # 0.3 / 0.1 is a little less than 3 in floating point: do not lose a tick to that
-    return int(number + 1e-9)
-
-
 def ticks(goal: float, speed: float, rate: float, keys: str = 'goal / speed') -> int:
     """Return the number of ticks that it takes to cover `goal` (m or rad) at `speed` (m/s or rad/s), rounded down.
 
-    rate: ticks per second; keys: names of goal and speed, for the error message. Raises ValueError, see whole_ticks().
+    rate: ticks per second; keys: names of goal and speed, for the error message. Raises ValueError if the number is
+    below 1 or above MAX_TICKS.
     """
-    return whole_ticks(goal / speed * rate, f'{keys} * rate: {goal:g} / {speed:g} * {rate:g}')
+    number = goal / speed * rate
+    if not (isfinite(number) and 1 <= number + 1e-9 <= MAX_TICKS):
+        raise ValueError(f'{keys} * rate: {goal:g} / {speed:g} * {rate:g}: {number:g} ticks: expected from 1 to '
+                         f'{MAX_TICKS}')
+    # 0.3 / 0.1 is a little less than 3 in floating point: do not lose a tick to that
+    return int(number + 1e-9)
 
 
 def out_and_back(linear_speed: float, goal_distance: float, angular_speed: float, goal_angle: float,
@@ -151,8 +146,10 @@ class Leg(ABC):
         to_go = self.goal - self.done()
         if self.state is Phase.FINISHED:
             return 0.0
-        if self.state is Phase.TRIAL_STOP:
-            self._end_trial(to_go)
+        if self.state is Phase.TRIAL_STOP:      # the robot is stationary now
+            self.roll_out = max(0.0, self.trial_to_go - to_go)
+            self.recent.clear()
+            self.state = Phase.LAST_PART
         travel = self._measure_travel(to_go)
         # the robot cannot get closer to the goal than half of the travel per tick
         if to_go - self._expected_roll_out(travel) <= min(travel, self.min_speed / self.rate) / 2:
@@ -161,7 +158,9 @@ class Leg(ABC):
         self._check_progress(to_go)
         # the robot has reached its lowest speed, and is less than SLOW_DOWN from the goal
         if self.state is Phase.APPROACH and to_go < SLOW_DOWN * self.min_speed:
-            self._begin_trial(to_go, travel)
+            self.trial_to_go = to_go
+            self.trial_travel = max(travel, 1e-9)   # never divide by 0
+            self.state = Phase.TRIAL_STOP
             return 0.0
         # slow enough to brake in time
         limit = min(to_go / self.slow_down, sqrt(2 * self.deceleration * to_go))
@@ -174,18 +173,6 @@ class Leg(ABC):
             self.state = Phase.APPROACH
         self.turned += wrap_angle(pose.yaw - self.last.yaw)
         self.last = pose
-
-    def _begin_trial(self, to_go: float, travel: float) -> None:
-        """Begin the trial stop, which measures the stopping distance. travel: per tick, m or rad."""
-        self.trial_to_go = to_go
-        self.trial_travel = max(travel, 1e-9)   # never divide by 0
-        self.state = Phase.TRIAL_STOP
-
-    def _end_trial(self, to_go: float) -> None:
-        """Finish the trial stop: the robot is stationary, and the last part begins."""
-        self.roll_out = max(0.0, self.trial_to_go - to_go)
-        self.recent.clear()
-        self.state = Phase.LAST_PART
 
     def _measure_travel(self, to_go: float) -> float:
         """Return the robot's current travel per tick, m or rad."""

@@ -47,9 +47,9 @@ class Server:
         return self.call('getParam', name) if self.call('hasParam', name) else default
 
 
-def call(uri: str, method: str, *args: str | float, timeout: float = TIMEOUT) -> Any:
+def call(uri: str, method: str, *args: str | float) -> Any:
     """Return the result of one call, like Server.call()."""
-    with Server(uri, timeout) as server:
+    with Server(uri) as server:
         return server.call(method, *args)
 
 

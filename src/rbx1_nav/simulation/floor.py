@@ -5,7 +5,7 @@ from typing import Any
 
 from rbx1_nav.base.kinematics import Odometry
 from rbx1_nav.base.surfaces import Surface
-from rbx1_nav.simulation.floor_noise import Roughness, make_roughness
+from rbx1_nav.simulation.floor_noise import Roughness, is_rough
 from rbx1_nav.simulation.slip import RandomErrors, draw_run, floor_travel
 
 
@@ -37,4 +37,4 @@ class Floor:
 
 def make_floor(surface: Surface, seed: int) -> Floor:
     """Return the Floor of a run with this seed."""
-    return Floor(surface, draw_run(surface, seed), make_roughness(surface, seed))
+    return Floor(surface, draw_run(surface, seed), Roughness(surface, seed) if is_rough(surface) else None)

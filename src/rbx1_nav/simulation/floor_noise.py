@@ -84,8 +84,3 @@ def draw_noises(surface: Surface, seed: int) -> Iterator[Noise]:
 def is_rough(surface: Surface) -> bool:
     """Return whether a Surface has noise."""
     return any(getattr(surface, key) for key in NOISES)
-
-
-def make_roughness(surface: Surface, seed: int) -> Roughness | None:
-    """Return the Roughness of a Surface, or None if the surface has no noise."""
-    return Roughness(surface, seed) if is_rough(surface) else None

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rbx1_nav.simulation.floor import Floor
-from rbx1_nav.simulation.floor_noise import make_roughness
+from rbx1_nav.simulation.floor_noise import Roughness
 from rbx1_nav.simulation.slip import RandomErrors
 from rbx1_nav.simulation.wheels import Wheels
 from sample_surface import SURFACE
@@ -24,7 +24,7 @@ speeds = st.floats(-1, 1)
 
 
 def make_wheels(surface, seed=0):
-    return Wheels(WIDTH, Floor(surface, NO_SLIP, make_roughness(surface, seed)), 0.02)
+    return Wheels(WIDTH, Floor(surface, NO_SLIP, Roughness(surface, seed)), 0.02)
 
 
 def counted(wheels):

@@ -200,14 +200,13 @@ def draw_fit(file: str, title: str, comparisons: Sequence[Comparison]) -> None:
                     0.1, 0.5 + MARGIN)
     for axes in (recorded, simulated):      # the same part of the floor
         axes.set(xlim=extent[:2], ylim=extent[2:], aspect='equal')
+        axes.plot(0, 0, marker='+', markersize=14, color='black', linestyle='', label='start')
     count, inside_50, inside_90 = shares(comparisons)
     recorded.set_title('recorded', fontsize='medium')
     simulated.set_title('simulated on the fitted floor, same commands', fontsize='medium')
     ends.set_title(f'{count} measured end poses: {inside_50} inside 50 %, {inside_90} inside 90 %'
                    if count else 'simulated end poses', fontsize='medium')
     for axes in (recorded, simulated, ends):
-        if axes is not ends:
-            axes.plot(0, 0, marker='+', markersize=14, color='black', linestyle='', label='start')
         axes.set(xlabel='x (m)', ylabel='y (m)')
         axes.grid(True, alpha=0.5)
         axes.legend(loc='upper center', bbox_to_anchor=(0.5, -0.13), ncol=4, frameon=False, fontsize='small')
