@@ -28,7 +28,8 @@ SKEW = 0.1              # s by which stamps of wheels and gyro may be apart. Wit
 LEAST_MOTION = 0.02     # m and rad in a PERIOD: in a smaller one, the robot is stationary, or somebody carries it.
 #                         Without it, the heading of a Jackal is uncertain by 91 degrees instead of 31
 ENOUGH_TURN = 0.1       # rad that show whether a gyro turns
-ROUNDING = 0.001        # rad: 1 sigma of a turn of the odometry, whose encoders count ticks of 0.2 mm (0.25 m of track)
+TICK = 0.004            # rad: a tick of 1 mm, with a track of 0.25 m, until the odometry reports a smaller turn
+ROUNDING = TICK / 4     # rad: 1 sigma of a turn of the odometry; a number that is rounded to ticks has TICK / sqrt(12)
 RARE, CLEAR = 3.0, 5.0  # standard deviations of a rare difference, and of a contradiction: 1 of 370, and of 1.7 million
 MAX_SLIP = 0.95         # beyond it, the gyro fails. The wheels of a Jackal, a skid-steer, report 7.4 times its turn
 #                         (robot_localization, test2.bag: a slip of 0.865)
@@ -61,8 +62,7 @@ class Filter(PoseErrors):
         self.doubted = 'gyro' if self.gyro_left else 'nothing'      # what compare() has found last
         self.compared = NOTHING         # in this PERIOD
         self.deviations = 0.0, 0        # sum of the differences since then (standard deviations), and their number
-        # rad: turn of the gyro, how much farther the wheels have turned, and how much of that in contradictions
-        self.turned = self.lost = self.slipped = 0.0
+        self.turned = self.lost = 0.0   # rad: turn of the gyro, and how much farther the wheels have turned
 
     def turn(self, duration: float, wheels: Measurement, gyro: Measurement | None, forward: float = 0.0) -> Yaw:
         """Return the Yaw of a step of `duration` (s): as measured by the gyro, or by the wheels if the gyro has not
@@ -91,7 +91,7 @@ class Filter(PoseErrors):
 
     def compare(self, duration: float, wheels: float, gyro: Measurement | None, forward: float) -> str | None:
         """Compare the turns of wheels and gyro after a step, if the gyro has measured all of this PERIOD. Return what
-        a complete PERIOD shows: 'gyro', 'bias', 'both', 'scale', or '' for nothing. The pose does not change."""
+        a complete PERIOD shows: 'gyro', 'bias', 'scale', or '' for nothing. The pose does not change."""
         if not gyro:
             self.compared = NOTHING
             return None
@@ -105,8 +105,8 @@ class Filter(PoseErrors):
         if abs(wheels) + abs(forward) < LEAST_MOTION:
             return None
         turned = measured - self.bias * time
-        lost = wheels * (1 - self.prior.slip_turning) - turned
-        self.turned, self.lost = self.turned + turned, self.lost + lost
+        self.turned += turned
+        self.lost += wheels * (1 - self.prior.slip_turning) - turned
         if self.gyro_left and not (abs(wheels) > ENOUGH_TURN and 0.5 < turned / wheels < 2):
             return 'gyro'
         if self.gyro_left:
@@ -132,28 +132,24 @@ class Filter(PoseErrors):
             self.leave_gyro()
             return 'gyro'
         self.contradicts = abs(deviation) > CLEAR
-        if self.contradicts:    # wheels that spin, or are blocked: no drift
-            self.slipped += lost
+        if self.contradicts:    # wheels that spin, or are blocked
             return ''
         return self._test_drift(deviation) or self._test_scale()
 
     def _test_drift(self, deviation: float) -> str:
-        """Test whether the differences since the last rest have one sign. If they do, the bias has drifted steadily, as
-        far as the wheels show if they are right: return 'bias'. Slip and curvature are unknown again, and the error
-        that the drift has caused is part of the covariance. A bias that drifts by more than STEADY does not exist:
-        return 'both'."""
+        """Test whether the differences since the last rest have one sign. If they do, return 'bias': it has
+        drifted steadily, as far as the wheels show if they are right. Slip and curvature are unknown again, and the
+        error that the drift has caused is part of the covariance. A difference of more than STEADY is no drift."""
         total, count = self.deviations = self.deviations[0] + deviation, self.deviations[1] + 1
         if not self.rested or total ** 2 < CLEAR ** 2 * count:
             return ''
         self.deviations = 0.0, 0
-        lost = self.lost - self.slipped
-        self.P[YAW][YAW] += lost ** 2
-        self.drift = -2 * lost / self.moving    # twice the mean
-        if abs(self.drift) > STEADY:
-            return 'both'
-        self.P[BIAS][BIAS] += self.drift ** 2
-        self.walk = max(self.walk, self.drift ** 2 / self.moving)
-        self.forget_wheels()
+        self.P[YAW][YAW] += self.lost ** 2
+        self.drift = -2 * self.lost / self.moving    # twice the mean
+        if abs(self.drift) < STEADY:
+            self.P[BIAS][BIAS] += self.drift ** 2
+            self.walk = max(self.walk, self.drift ** 2 / self.moving)
+            self.forget_wheels()
         return 'bias'
 
     def _test_scale(self) -> str:

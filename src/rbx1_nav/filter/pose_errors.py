@@ -83,11 +83,12 @@ class PoseErrors:
         self.flush()
         x, y = self.state.x - self.start.x, self.state.y - self.start.y
         slip = self.prior.slip_straight_spread / self.grip
-        errors = (self.error, [self.scale_error * each for each in self.by_scale],
-                  [INSTABILITY * each for each in self.by_rest], (slip * x, slip * y, 0.0), self.doubt)
-        xx, xy, yy, start_x_yaw, start_y_yaw, yaw = (
-            self.P[i][j] + sum([each[i] * each[j] for each in errors])
-            for i, j in ((X, X), (X, Y), (Y, Y), (X, YAW), (Y, YAW), (YAW, YAW)))
+        (xx, xy, start_x_yaw, *_), (_, yy, start_y_yaw, *_), (_, _, yaw, *_) = self.P[:3]
+        for factor, (by_x, by_y, by_yaw) in ((1.0, self.error[:3]), (self.scale_error, self.by_scale),
+                                             (INSTABILITY, self.by_rest), (slip, (x, y, 0.0)), (1.0, self.doubt)):
+            by_x, by_y, by_yaw = factor * by_x, factor * by_y, factor * by_yaw
+            xx, xy, yy = xx + by_x * by_x, xy + by_x * by_y, yy + by_y * by_y
+            start_x_yaw, start_y_yaw, yaw = start_x_yaw + by_x * by_yaw, start_y_yaw + by_y * by_yaw, yaw + by_yaw ** 2
         # from errors of a turn about the start to errors at the pose
         x_yaw, y_yaw = start_x_yaw - y * yaw, start_y_yaw + x * yaw
         xx -= y * (start_x_yaw + x_yaw)
@@ -167,12 +168,14 @@ class PoseErrors:
             error[i] += part * (error[BIAS] - self.bias)
         for cause, parts in (BIAS, self.by_bias), (SLIP, self.by_slip), (CURVATURE, self.by_curvature):
             if any(parts):
+                by_x, by_y, by_yaw = parts
                 for i, part in enumerate(parts):        # P = F P F', first the rows, then the columns
                     P[i] = [value + part * other for value, other in zip(P[i], P[cause])]
                 for row in P:
                     by_cause = row[cause]
-                    for j, part in enumerate(parts):
-                        row[j] += part * by_cause
+                    row[X] += by_x * by_cause
+                    row[Y] += by_y * by_cause
+                    row[YAW] += by_yaw * by_cause
         self._begin()
 
     def doubt_bias(self, rate: float) -> None:

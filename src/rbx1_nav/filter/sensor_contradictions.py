@@ -11,10 +11,8 @@ from rbx1_nav.filter.pose_errors import BIAS
 TEXTS = {
     'rest': 'the robot has not been at rest yet, so the bias of the gyro is unknown: the heading may drift by '
             '{bias:.1f} degrees/s or more',
-    'bias': 'the bias of imu_data seems to have drifted since the last rest, by {drift:.2f} degrees/s: the heading is '
-            'uncertain; let it rest',
-    'both': 'odom has turned by {lost:.2f} rad more than imu_data since the last rest: one of them is wrong; the '
-            'heading is uncertain',
+    'bias': 'odom has turned by {lost:.2f} rad more than imu_data since the last rest: the bias has drifted, or one of '
+            'them is wrong; the heading is uncertain; let it rest',
     'scale': 'imu_data and odom differ by {scale:.0f} % in all turns: the scale of the gyro or the track width is '
              'wrong; the heading is uncertain',
     'gyro': 'odom has turned by {lost:.2f} rad more than imu_data since the last rest: the gyro fails, and is not used '
@@ -35,7 +33,7 @@ class Doubts:
         """Report what a Filter has found, a key of TEXTS, or '' if wheels and gyro agree."""
         if found and found not in self.warned:
             self.warned.add(found)
-            self.warn(TEXTS[found].format(bias=degrees(ekf.sigma(BIAS)), drift=degrees(ekf.drift), lost=ekf.lost,
+            self.warn(TEXTS[found].format(bias=degrees(ekf.sigma(BIAS)), lost=ekf.lost,
                                           scale=100 * ekf.scale_error))
         elif not ekf.gyro_left and self.warned & LEFT:
             self.warned -= LEFT

@@ -9,7 +9,7 @@ the turn of the gyro is summed up over WINDOW or longer:
   have moved, the robot is not at rest; otherwise, the bias has changed.
 - carried: any other rate. Somebody turns the robot, which turns as the gyro measures, at an uncertain position. If the
   rate is steady, the bias may have changed instead: the heading is uncertain by the whole turn until the old rate is
-  back. A rate that is steady for LONG is the bias.
+  back.
 
 A turn that the wheels do not show, slower than STEADY, cannot be told from a bias that has changed. Before the first
 rest, no bias is known, so any rate that is steady may be the bias.
@@ -20,24 +20,21 @@ from math import degrees, hypot, sqrt
 
 from rbx1_nav.base.kinematics import Pose
 from rbx1_nav.base.units import wrap_angle
-from rbx1_nav.filter.filter import CLEAR, RARE, STEADY, Filter
+from rbx1_nav.filter.filter import CLEAR, RARE, STEADY, TICK, Filter
 from rbx1_nav.filter.gyro_readings import Measurement
-from rbx1_nav.filter.pose_errors import BIAS, Yaw
+from rbx1_nav.filter.pose_errors import BIAS, PERIOD, Yaw
 
 STANDSTILL, UNDECIDED, CARRIED = 'standstill', 'undecided', 'carried'
 
-WINDOW = 0.25           # s over which the turn is summed up at least
+WINDOW = PERIOD / 2     # s over which the turn is summed up at least; two of them count
 SAME = 1e-4             # m and rad: a smaller change is rounding
 MOVE = 0.5              # m/rad * tick: both wheels may be off by one; 1 mm for a turn of 0.004 rad
 CREEP = 0.0005          # m/s: a TurtleBot3 in its simulator creeps by 0.2 mm/s,
 CREEP_TURN = 0.001      # rad/s: and turns by 0.05 degrees/s (fuse, turtlebot3.bag)
-STILL, FIRST = 250.0, 1400.0    # s/rad * tick: length of a first window if the wheels are still, and if they creep or
-#                                 tick: a turn of 0.3 degrees/s would show in it
-TICK = 0.004            # rad, until a smaller one is seen: a tick of 1 mm, with a track of 0.25 m
+STILL = 250.0           # s/rad * tick: length of a first window; a turn of 0.3 degrees/s would show in it
 TURN, TELLING = 2.1, 8.0        # ticks: both wheels may be off by one; they report more than that in such a turn, even
 #                                 if the robot turns twice as far as they report
-STILL_TELLING = 4.0     # ticks: both wheels report one in half of such a turn
-DOUBTFUL, LONG = 1.0, 60.0      # s for which another rate must be steady to be possibly the bias, and to be the bias
+DOUBTFUL = 2 * PERIOD   # s for which another rate must be steady to be possibly the bias
 
 
 class Standstill:
@@ -110,12 +107,12 @@ class Standstill:
             self.case = None
         self.turning = 0.0
         self.time, self.angle, self.variance = self.time + duration, self.angle + gyro[0], self.variance + gyro[1]
-        least = 0.0 if ekf.rested or self.waiting[0] else self.tick * (STILL if self.exact else FIRST)
+        least = 0.0 if ekf.rested or self.waiting[0] else self.tick * STILL
         if self.time < max(WINDOW, least) - 1e-6:
             return ''
         turn = abs(self.angle - ekf.bias * self.time)
         drifted = ekf.rested and turn ** 2 > RARE ** 2 * (self.variance + (ekf.sigma(BIAS) * self.time) ** 2)
-        if drifted and turn < self.tick * (STILL_TELLING if self.exact else TELLING):
+        if drifted and turn < self.tick * TELLING / (1 + self.exact):   # still wheels report a tick in half of it
             self._release(ekf)
             self._rest()
             self.case = UNDECIDED
@@ -144,10 +141,6 @@ class Standstill:
             self._believe_turn(ekf)
         before, self.steady, self.doubted = self.steady, self.steady + duration, self.doubted + offset * duration
         ekf.doubt_turn(offset * duration)
-        if self.steady > LONG and abs(rate) <= self.max_bias:
-            ekf.doubt_bias(rate)
-            ekf.learn_bias(ekf.bias + self.doubted / self.steady, 0.0)
-            self.steady = self.doubted = 0.0
         return (f'the wheels are at rest, and imu_data turns steadily by {degrees(offset):.1f} degrees/s: somebody '
                 'turns the robot, or the bias has changed; the heading is uncertain'
                 if before <= DOUBTFUL < self.steady else '')

@@ -16,7 +16,7 @@ NO_ESTIMATE, NO_MESSAGE, TIMED_OUT, USED = (
 
 def make(case=None, timed_out=False, suspect=None, estimated=True):
     """A CombinedOdometry with a bias of 0.5 +- 0.25 degrees/s and a heading within 3 degrees."""
-    ekf = SimpleNamespace(bias=radians(0.5), doubted='both',
+    ekf = SimpleNamespace(bias=radians(0.5), doubted='bias',
                           sigma=lambda index: radians(0.25) if index == BIAS else 9.0)
     return SimpleNamespace(
         filter=ekf if estimated else None, case=case, timed_out={'odom': False, 'imu_data': timed_out}, suspect=suspect,
@@ -48,7 +48,7 @@ def test_the_state_of_the_filter_and_of_each_sensor(monkeypatch, name, combined,
     status = tasks[name](DiagnosticStatusWrapper())
     known = combined and combined.filter
     assert (status.level, status.message) == state and {each.key: each.value for each in status.values} == ({
-        'Case': (combined and combined.case) or 'none', 'Doubted': 'both' if known else 'nothing',
+        'Case': (combined and combined.case) or 'none', 'Doubted': 'bias' if known else 'nothing',
         'Gyro bias (degrees/s)': '0.5000 +- 0.2500' if known else 'unknown',
         'Standard deviation of the heading (degrees)': '3.00' if known else 'unknown',
         'Poses published': '7', 'Rejected messages on set_pose': '4'} if name == 'filter' else {
