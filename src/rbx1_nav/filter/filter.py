@@ -54,7 +54,6 @@ class Filter(PoseErrors):
         self.contradicts = False        # whether wheels and gyro differ clearly in the last PERIOD
         self.last_turn = 0.0    # rad, of the wheels in the PERIOD before
         self.noise = FIRST_NOISE, FIRST_NOISE       # of the wheels: sum of measurements / noise of any floor, number
-        self.drift = 0.0        # rad/s, by which the wheels show that the bias has drifted
         self._forget()
 
     def _forget(self) -> None:
@@ -145,10 +144,10 @@ class Filter(PoseErrors):
             return ''
         self.deviations = 0.0, 0
         self.P[YAW][YAW] += self.lost ** 2
-        self.drift = -2 * self.lost / self.moving    # twice the mean
-        if abs(self.drift) < STEADY:
-            self.P[BIAS][BIAS] += self.drift ** 2
-            self.walk = max(self.walk, self.drift ** 2 / self.moving)
+        drift = 2 * self.lost / self.moving    # rad/s: twice the mean
+        if abs(drift) < STEADY:
+            self.P[BIAS][BIAS] += drift ** 2
+            self.walk = max(self.walk, drift ** 2 / self.moving)
             self.forget_wheels()
         return 'bias'
 

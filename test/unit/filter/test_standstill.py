@@ -127,7 +127,8 @@ def test_contradiction_of_a_gyro_upside_down_is_noticed_in_the_first_turn():
         robot.go(4.0, 0.2, -0.5, ratio=ratio)
         assert robot.case == 'contradiction' and robot.combined.filter.gyro_left
         assert [text.split(': ')[-1].split(';')[0] for text in robot.warnings] == [
-            'the bias has drifted, or one of them is wrong', 'the gyro fails, and is not used until it turns with the wheels']
+            'the bias has drifted, or one of them is wrong',
+            'the gyro fails, and is not used until it turns with the wheels']
 
 
 def test_without_a_gyro_there_is_no_case():
