@@ -82,6 +82,7 @@ class Lockstep:
         self.arrived: list[Received] = []       # commands that settle() has not ordered yet
         self.ready: list[tuple[Any, Any]] = []   # commands in the order in which they take effect
         self.idle = True        # whether everything was asleep, and nothing has been delivered since
+        self.held = False       # whether the clock was held after the last tick
         self.tick = 0
 
     def receive(self, target: Any, header: dict[str, str], command: Any) -> None:
@@ -94,11 +95,15 @@ class Lockstep:
     def begin(self) -> None:
         """Begin a tick. What has woken by itself still belongs to the tick before."""
         self.tick += 1
+        moving = {driver.name for driver in self.drivers.values() if driver.moving}
+        # otherwise, all drivers have just sent a command, and wait for the tick
+        check = self.watch.update() or self.held or not self.watch.drivers or not self.watch.drivers <= moving
         while True:
-            self._settle()
+            if check:
+                self._settle()
             with self.lock:     # if nothing has arrived, the next tick has begun
-                self.idle = bool(self.arrived)
-            if not self.idle:
+                check = self.idle = bool(self.arrived)
+            if not check:
                 return
 
     def deliver(self, publisher: rospy.Publisher, message: Message) -> None:
@@ -129,6 +134,7 @@ class Lockstep:
         """Wait until a time (s of the monotonic clock), or longer if this tick tests who sends without being woken."""
         self.idle = True
         hold = max(map(self._hold, self.drivers.values()), default=0.0)
+        self.held = hold > 0
         later = max(until, monotonic() + hold)
         for driver in self.drivers.values():
             driver.time += min(hold, later - until)     # not part of the interval

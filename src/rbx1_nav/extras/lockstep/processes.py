@@ -18,6 +18,8 @@ POLL = 0.02
 # the greatest number of processes with threads that poll at which it is usual that none of them has run during a check
 AT_REST = 2
 ENDED = b'X', b'Z'      # states of a thread that has exited
+# first parts of the names of the kernel functions in which most threads wait, always in state S
+INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', b'hrtimer_nanosleep'
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
 
 
@@ -66,9 +68,10 @@ class Thread:
 
     def sleeps(self) -> bool:
         """Return whether the thread is waiting. Raises OSError if it has gone: another one may have taken its place."""
+        self.place = os.pread(self.files[1], 64, 0)
+        if self.place.startswith(INTERRUPTIBLE):
+            return True
         state = self.state()
-        if not state:
-            raise ProcessLookupError
         # state S alone may belong to a thread that is about to wait and may still find that it need not wait
         return self.waits_in() not in (b'0', b'') if state == b'S' else state in ENDED
 
