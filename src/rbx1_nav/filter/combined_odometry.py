@@ -32,11 +32,12 @@ class Estimate(NamedTuple):
 class CombinedOdometry:
     """Runs the filter on messages in the order of their stamps, with one step per odometry message.
 
-    A step waits until the gyro has reported up to the stamp of the odometry. So the result depends only on stamps (ns),
-    not on arrivals, as long as no sensor times out. A sensor has timed out if the other sensor's stamps are ahead by
-    more than `timeout`, and nothing has arrived from it for that time: a late sensor is not silent. A sensor that has
-    timed out is not used until it recovers. Without the gyro, the wheels measure the turn. Without odometry, there is
-    no estimate; when it recovers, both sensors have measured the turn in the dropout.
+    A step waits until the gyro has reported up to the stamp of the odometry. So from the arrival of the first odometry
+    on, the result depends only on stamps (ns), not on arrivals, as long as no sensor times out. A sensor has timed out
+    if the other sensor's stamps are ahead by more than `timeout`, and nothing has arrived from it for that time: a late
+    sensor is not silent. A sensor that has timed out is not used until it recovers. Without the gyro, the wheels
+    measure the turn. Without odometry, there is no estimate; when it recovers, both sensors have measured the turn in
+    the dropout.
     """
 
     def __init__(self, prior: Priors, timeout: int, gyro_used: bool = True,
@@ -117,8 +118,8 @@ class CombinedOdometry:
 
     @property
     def case(self) -> str | None:
-        """The rule that the last step has followed: 'standstill', 'agreement', 'contradiction' or 'carried'; None if a
-        sensor is missing."""
+        """The rule that the last step has followed: 'standstill', 'carried', 'contradiction', or otherwise 'agreement'.
+        None if a sensor is missing, or if the last odometry was ignored."""
         if not self.filter or not self.gyro_used or self.suspect or any(self.timed_out.values()):
             return None
         case = self.standstill.case

@@ -90,16 +90,16 @@ class Filter(PoseErrors):
 
     def compare(self, duration: float, wheels: float, gyro: Measurement | None, forward: float) -> str | None:
         """Compare the turns of wheels and gyro after a step, if the gyro has measured all of this PERIOD. Return what
-        a complete PERIOD shows: 'gyro', 'bias', 'scale', or '' for nothing. The pose does not change."""
+        a complete PERIOD shows: 'gyro', 'bias', 'scale', or '' for nothing; None before its end, or if the robot has
+        hardly moved in it. The pose does not change."""
         if not gyro:
             self.compared = NOTHING
             return None
         time, turn, measured, path, variance = self.compared
-        self.compared = time, wheels, measured, forward, variance = (
-            time + duration, turn + wheels, measured + gyro[0], path + forward, variance + gyro[1])
-        if time < PERIOD - 1e-6:
+        self.compared = time + duration, turn + wheels, measured + gyro[0], path + forward, variance + gyro[1]
+        if self.compared[0] < PERIOD - 1e-6:
             return None
-        self.compared = NOTHING
+        (time, wheels, measured, forward, variance), self.compared = self.compared, NOTHING
         change, self.last_turn, self.contradicts = wheels - self.last_turn, wheels, False
         if abs(wheels) + abs(forward) < LEAST_MOTION:
             return None

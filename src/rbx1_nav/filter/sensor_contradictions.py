@@ -31,7 +31,7 @@ class Doubts:
 
     def report(self, found: str, ekf: Filter) -> None:
         """Report what a Filter has found, a key of TEXTS, or '' if wheels and gyro agree."""
-        if found and found not in self.warned:
+        if found and not self.warned & (LEFT if found in LEFT else {found}):
             self.warned.add(found)
             self.warn(TEXTS[found].format(bias=degrees(ekf.sigma(BIAS)), lost=ekf.lost,
                                           scale=100 * ekf.scale_error))

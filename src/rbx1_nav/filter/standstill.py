@@ -64,7 +64,7 @@ class Standstill:
         self.waiting = 0.0, 0.0, 0.0    # of the previous window, used if the robot is still at rest
 
     def stands(self, pose: Pose, turned: float) -> bool:
-        """Store a pose of the wheels and the turn (rad) to it, and return whether they may be at rest there."""
+        """Return whether the wheels may be at rest at their new pose, after a turn (rad)."""
         if abs(turned) > SAME:
             self.tick = min(self.tick, abs(turned))
         last = self.anchor
@@ -130,7 +130,7 @@ class Standstill:
     def _carry(self, duration: float, rate: float, margin: float, ekf: Filter) -> str:
         """Add a step (s) in which the robot is turned at a rate (rad/s), or the bias has changed to that rate."""
         self._release(ekf)
-        self._begin(self.anchor)    # the wheels must not move at all
+        self._begin(self.anchor)    # a creep does not count
         self._rest()
         self.case = CARRIED
         self.turning += duration

@@ -43,3 +43,7 @@ def test_a_gyro_that_is_left_is_reported_until_it_is_used_again(found, text):
     again = 'odom and imu_data agree again'
     assert reports.send('', '') == [text, again]
     assert reports.send(found, gyro_left=True) == [text, again, text]
+
+
+def test_a_gyro_that_is_left_already_is_not_reported_for_another_reason():
+    assert len(Reports().send('dead', 'gyro', 'gyro', gyro_left=True)) == 1

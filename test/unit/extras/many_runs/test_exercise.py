@@ -1,5 +1,6 @@
 """The exercise without ROS: the distances by which each method misses, over twenty seeds."""
 import os
+import re
 from math import cos, degrees, hypot, pi, remainder, sin
 from statistics import median
 
@@ -9,10 +10,11 @@ import pytest
 from rbx1_nav.base.robot_parameters import load_robot
 from rbx1_nav.base.surfaces import load_surface
 from rbx1_nav.exercise.methods import METHODS
-from rbx1_nav.extras.many_runs.simulated_run import simulate
+from rbx1_nav.extras.many_runs.simulated_run import PARAMETERS, simulate
 from rbx1_nav.filter.priors import priors
 
-CONFIG = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..', 'config')
+ROOT = os.path.join(os.path.dirname(__file__), '..', '..', '..', '..')
+CONFIG = os.path.join(ROOT, 'config')
 SEEDS = range(20)
 CARPET, FLOOR = (load_surface(name, os.path.join(CONFIG, 'surfaces')) for name in ('low_ply_carpet', 'hard_floor'))
 TURTLEBOT = load_robot(os.path.join(CONFIG, 'turtlebot.yaml'))
@@ -102,3 +104,11 @@ def test_another_floor_may_be_assumed_than_the_true_one():
                         for prior in (None, priors(CARPET), priors(FLOOR)))
     assert own == same and own._replace(estimate=None) == other._replace(estimate=None)
     assert own.estimate != other.estimate
+
+
+@pytest.mark.parametrize('method', METHODS.values(), ids=lambda each: each.name)
+def test_the_simulation_drives_with_the_defaults_of_the_script(method):
+    with open(os.path.join(ROOT, 'nodes', method.script), encoding='utf-8') as file:
+        found = re.findall(r'(?m)^    ~(\w+) .* default: ([\d.]+|pi)\)$', file.read())
+    defaults = {name: pi if value == 'pi' else float(value) for name, value in found if name in PARAMETERS}
+    assert len(defaults) >= 5 and defaults == {name: PARAMETERS[name] for name in defaults}
