@@ -11,8 +11,9 @@ the turn of the gyro is summed up over WINDOW or longer:
   rate is steady, the bias may have changed instead: the heading is uncertain by the whole turn until the old rate is
   back.
 
-A turn that the wheels do not show, slower than STEADY, cannot be told from a bias that has changed. Before the first
-rest, no bias is known, so any rate that is steady may be the bias.
+A turn that the wheels do not show, slower than STEADY, cannot be told from a bias that has changed. If the bias changes
+in a rest, the heading is therefore as uncertain as that turn. Before the first rest, no bias is known, so any rate that
+is steady may be the bias.
 """
 from __future__ import annotations
 
@@ -54,6 +55,8 @@ class Standstill:
         self._rest()
         self.turning = 0.0      # s for which the robot has been turned
         self.steady = self.doubted = 0.0    # s, rad: turn at a steady rate that is not the bias
+        # rad/s: by how much the bias has changed in this rest; None until it is learned
+        self.changed: float | None = None
 
     def _begin(self, pose: Pose | None) -> None:
         self.anchor = pose
@@ -106,6 +109,8 @@ class Standstill:
         elif self.case == CARRIED:
             self.case = None
         self.turning = 0.0
+        if self.changed:
+            ekf.doubt_turn(self.changed * duration)
         self.time, self.angle, self.variance = self.time + duration, self.angle + gyro[0], self.variance + gyro[1]
         least = 0.0 if ekf.rested or self.waiting[0] else self.tick * STILL
         if self.time < max(WINDOW, least) - 1e-6:
@@ -122,7 +127,12 @@ class Standstill:
         self._begin(pose if self.crept else self.anchor)
         if drifted or time:
             time, angle, variance = self.waiting if drifted else (time, angle, variance)
+            before = ekf.bias
             change = ekf.learn_bias(angle / time, variance / time ** 2)
+            if self.changed is None:
+                self.changed = 0.0
+            elif change or self.changed:
+                self.changed += ekf.bias - before
             self.case = STANDSTILL
         return (f'the bias of imu_data has changed by {degrees(change):.2f} degrees/s since the last rest: the heading '
                 f'is uncertain' if change else '')

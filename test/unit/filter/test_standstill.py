@@ -96,6 +96,25 @@ def test_a_drifting_bias_makes_the_heading_as_uncertain_as_it_is_wrong():
     assert max(squares[1:]) < 9.0
 
 
+@pytest.mark.parametrize('rate', [0.3, 0.5, 0.9])
+def test_a_slow_turn_that_is_taken_for_a_bias_makes_the_heading_as_uncertain_as_it_is_wrong(rate):
+    robot = Robot()
+    robot.go(20.0)
+    robot.go(10.0, carried=radians(rate))
+    error, sigma = robot.go(10.0)
+    assert abs(error) > 5 * rate and 0.5 < sigma / abs(error) < 1.5
+
+
+def test_a_bias_that_has_changed_since_the_rest_before_does_not_make_the_heading_more_uncertain():
+    robot = Robot()
+    robot.go(20.0)
+    robot.go(1.0, 0.2)
+    robot.bias += radians(0.5)
+    _, before = robot.go(5.0)
+    _, sigma = robot.go(10.0)
+    assert sigma < before + 0.1
+
+
 def test_carried_the_heading_turns_with_the_gyro():
     robot = Robot()
     robot.bias = radians(1.0)
