@@ -29,6 +29,13 @@ def test_dead_reckoning_and_port_have_the_heading_of_an_imu_at_another_rate():
     assert math.remainder(difference, 2 * math.pi) == pytest.approx(0, abs=1e-6)
 
 
+def test_the_gyro_has_the_scale_error_of_the_case():
+    case = CASES['scale_circle']
+    exact, scaled = ([imu.rate for imu, _ in bases.drive(ROBOT, case._replace(scale=scale), simulated.floor(case.floor),
+                                                         0).imu] for scale in (0.0, 0.1))
+    assert max(abs(other - rate) for rate, other in zip(exact, scaled)) > 0.02
+
+
 def test_the_messages_have_the_rates_the_bias_and_the_variances_of_the_case():
     case = CASES['husky']._replace(drift=0.5)
     record = bases.drive(ROBOT, case, simulated.floor(case.floor), 0)

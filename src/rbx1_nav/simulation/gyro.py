@@ -48,7 +48,6 @@ class Gyro:
         """run: the errors drawn from the surface; seed: seed of the noise."""
         self.surface = surface
         self.run = run
-        self.scale = 1 + run.gyro_scale_error
         self.noise = random.Random(f'gyro {seed}').gauss
         self.density = surface.gyro_noise ** 2 / NOISE_RATE     # rad^2/s: variance of the angle per second of readings
         self.reset()
@@ -65,7 +64,7 @@ class Gyro:
         """See IdealGyro. at_rest: whether the wheels were at rest during this time."""
         surface = self.surface
         noise = surface.gyro_noise / (NOISE_RATE * duration) ** 0.5
-        rate = (yaw - self._true_yaw) / duration * self.scale + self.run.gyro_bias
+        rate = (yaw - self._true_yaw) / duration * (1 + self.run.gyro_scale_error) + self.run.gyro_bias
         rate = clamp(rate + self.noise(0.0, noise), surface.gyro_measurement_range)
         self._true_yaw = yaw
         if at_rest and self._calibrating:
