@@ -114,9 +114,10 @@ class TestBrowserPage(PageTest):
     def test_a_run_and_the_run_before(self):
         rospy.set_param('/out_and_back/goal_distance', 0.5)
         self.addCleanup(rospy.delete_param, '/out_and_back/goal_distance')
+        begin = len(self.odom.messages)
         self.page.run('timed')
-        self.odom.wait_for_twist(0.0, 1.0)
         self.page.wait_for_text('run-state', 'Running: timed')
+        self.odom.wait_for_twist(0.0, 1.0, begin)
         self.page.wait_for_text('run-state', 'Timed: finished')
         for source, watch in ('truth', self.truth), ('odometry', self.odom):
             x, y, _ = support.pose(watch.last)
