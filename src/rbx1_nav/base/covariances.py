@@ -10,7 +10,7 @@ from rbx1_nav.base.units import Covariance
 MEASURED = 1e-6         # variance of a good measurement, m^2 or rad^2 (or per s^2): 1 mm, 1 mrad
 MIN_VARIANCE = 1e-12    # smallest variance that a sensor may report, same units: 1 um, 1 urad
 HELD = 0.3      # m: path over which a rounded heading stays constant while the robot drives straight ahead
-STEP = 0.1, 0.2     # m, rad: longest step whose errors may be taken as those of its middle
+STEP = 0.1, 0.2     # m, rad: longest step that may be linearized about its middle
 
 
 class Uncertainty(NamedTuple):
@@ -97,7 +97,7 @@ class UncertainOdometry:
         return travel.distance_variance + length, self.rounding[1] * distance * max(path, distance / 2), turn
 
     def move(self, travel: Travel) -> None:
-        """Add a Travel, which may be long: that of a robot that has not answered."""
+        """Add a Travel. It is long if the robot has not answered for a while."""
         distance, angle, (along, aside, turn) = travel.distance, travel.angle, self._variances(travel)
         if not (distance or angle or along or turn):
             return

@@ -55,8 +55,7 @@ class Standstill:
         self._rest()
         self.turning = 0.0      # s for which the robot has been turned
         self.steady = self.doubted = 0.0    # s, rad: turn at a steady rate that is not the bias
-        # rad/s: by how much the bias has changed in this rest; None until it is learned
-        self.changed: float | None = None
+        self.changed: float | None = None   # rad/s: change of the bias in this rest; None until it is learned
 
     def _begin(self, pose: Pose | None) -> None:
         self.anchor = pose

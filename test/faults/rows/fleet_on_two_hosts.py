@@ -4,7 +4,7 @@ import math
 from rows.two_hosts import HOSTS, two_hosts
 import support
 
-FAULT = 'a fleet of two robots with one driver on its own host, and one on another host, which it cannot see'
+FAULT = 'a fleet of two robots: one driver runs on the host of the fleet, the other one on another host'
 PROMISE = 'the first robot ends at the exact pose; the driver of the second one is named as not in step'
 FULL, SHORT = 10, 1
 ROOT, ALONE = True, True

@@ -59,7 +59,7 @@ def test_a_long_travel_is_as_uncertain_as_many_short_ones(distance, angle):
     long.move(Travel(distance, angle, 0.01, 0.02))
     for _ in range(1000):
         short.move(Travel(distance / 1000, angle / 1000, 1e-5, 2e-5))
-    # 2 %: the errors of 10 cm or 0.2 rad are taken as those of its middle
+    # 2 %: a step of 10 cm or 0.2 rad is linearized about its middle
     assert numpy.array(long.covariance) == pytest.approx(numpy.array(short.covariance), rel=0.02, abs=1e-5)
     assert long.pose == pytest.approx(short.pose)
 

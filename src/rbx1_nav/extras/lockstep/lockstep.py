@@ -119,7 +119,7 @@ class Lockstep:
             for connection in connections:
                 try:
                     connection.write_data(buffer.getvalue())
-                except Exception:       # of various kinds
+                except Exception:       # of various kinds, also if another thread closes it
                     connection.close()      # the node has exited
             if wait:
                 self._settle(isinstance(message, Clock))

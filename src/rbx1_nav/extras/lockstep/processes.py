@@ -18,8 +18,9 @@ POLL = 0.02
 # the greatest number of processes with threads that poll at which it is usual that none of them has run during a check
 AT_REST = 2
 ENDED = b'X', b'Z'      # states of a thread that has exited
+NANOSLEEP = b'hrtimer_nanosleep'
 # first parts of the names of the kernel functions in which most threads wait, always in state S
-INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', b'hrtimer_nanosleep'
+INTERRUPTIBLE = b'futex_', b'poll_schedule_timeout', b'wait_woken', b'inet_csk_accept', NANOSLEEP
 TIMED = b'sleep', b'poll', b'select'    # parts of the names of kernel functions that wait with a timeout
 
 
@@ -86,7 +87,7 @@ class Thread:
 
     def polls(self) -> bool:
         """Return whether the thread is running or runnable, or sleeps only briefly; to be called after sleeps()."""
-        if not (self.is_poller or self.place.startswith((b'0', b'hrtimer_nanosleep'))):
+        if not (self.is_poller or self.place.startswith((b'0', NANOSLEEP))):
             return False
         now = time.monotonic()      # before the look: on a busy machine, the caller may be suspended in between
         exists = bool(self.look()) and self.state() not in ENDED
